@@ -1,0 +1,37 @@
+#include "catalogues.h"
+
+#include "render/camera.h"
+#include "render/figure.h"
+#include "render/style.h"
+#include "sim/flows.h"
+#include "sim/shapes.h"
+#include "sim/stepper.h"
+
+namespace app {
+
+namespace {
+
+template <class Row>
+std::vector<sim::CatalogueRow<int>> words(const std::vector<Row>& table) {
+  std::vector<sim::CatalogueRow<int>> rows;
+  for (const Row& row : table) {
+    rows.push_back({row.name, row.meaning, {}});
+    if constexpr (requires { row.keys; }) rows.back().keys = {row.keys.begin(), row.keys.end()};
+  }
+  return rows;
+}
+
+}  // namespace
+
+const std::vector<Catalogue>& catalogues() {
+  static const std::vector<Catalogue> all{
+      {"flows", "background flows", words(sim::flow_catalogue())},
+      {"shapes", "initial shapes", words(sim::shape_catalogue())},
+      {"schemes", "time stepping schemes", words(sim::scheme_catalogue())},
+      {"cameras", "directions of view", words(render::cameras())},
+      {"styles", "ways to paint a vesicle", words(render::styles())},
+      {"figures", "figures drawn from a trajectory", words(render::figures())}};
+  return all;
+}
+
+}  // namespace app

@@ -1,0 +1,161 @@
+#include "cli.h"
+
+#include "commands.h"
+#include "interrupt.h"
+#include "version.h"
+
+#include "render/context.h"
+#include "sim/catalogue.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace app {
+
+namespace {
+
+/// One option of any command: how it is written and what it means.
+struct OptionRow {
+  std::string_view name;
+  void (*add)(CLI::App&, Options&);
+};
+
+void parse_shard(Options& options, const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const char *begin = text.data(), *end = begin + text.size();
+  if (slash != std::string::npos && std::from_chars(begin, begin + slash, options.shard).ptr == begin + slash &&
+      std::from_chars(begin + slash + 1, end, options.shards).ptr == end && options.shards >= 1 && options.shard >= 0 &&
+      options.shard < options.shards)
+    return;
+  throw CLI::ValidationError("--shard", fmt::format("'{}' is not i/n with 0 <= i < n", text));
+}
+
+void parse_size(Options& options, const std::string& text) {
+  int width = 0, height = 0;
+  const std::size_t cross = text.find('x');
+  const char *begin = text.data(), *end = begin + text.size();
+  if (cross == std::string::npos || std::from_chars(begin, begin + cross, width).ptr != begin + cross ||
+      std::from_chars(begin + cross + 1, end, height).ptr != end)
+    throw CLI::ValidationError("--size", fmt::format("'{}' is not WIDTHxHEIGHT, such as 1920x1080", text));
+  options.set.push_back(fmt::format("view.size=[{}, {}]", width, height));
+}
+
+constexpr OptionRow option_rows[] = {
+    {"output", [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "where the results go"); }},
+    {"jobs",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-j,--jobs", o.jobs, "threads (default: as the scene says)")->check(CLI::Range(1, 1024));
+     }},
+    {"set",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--set", o.set, "change a key of the scene: --set time.end=5 (any number of times)")
+           ->allow_extra_args(false)
+           ->type_name("KEY=VALUE");
+     }},
+    {"steps",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--steps", o.steps, "stop after so many steps; 0: the initial state only")
+           ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
+     }},
+    {"dry-run", [](CLI::App& app, Options& o) { app.add_flag("--dry-run", o.dry_run, "print the resolved scene, do nothing"); }},
+    {"quiet", [](CLI::App& app, Options& o) { app.add_flag("-q,--quiet", o.quiet, "say nothing but errors"); }},
+    {"resume", [](CLI::App& app, Options& o) { app.add_flag("--resume", o.resume, "continue a trajectory"); }},
+    {"force", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace earlier results"); }},
+    {"gl",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--gl", o.gl, "OpenGL by auto, osmesa, egl, egl:N or software")->capture_default_str();
+     }},
+    {"shader-dir",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--shader-dir", o.shader_dir, "take shaders from this folder")->check(CLI::ExistingDirectory);
+     }},
+    {"shard",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<std::string>("--shard", [&o](const std::string& text) { parse_shard(o, text); },
+                                            "i/n: draw frames i, i + n, i + 2n, ... only")
+           ->type_name("I/N");
+     }},
+    {"style",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<std::string>("--style", [&o](const std::string& s) { o.set.push_back("view.style=" + s); },
+                                            "short for --set view.style=NAME")
+           ->type_name("NAME");
+     }},
+    {"size",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<std::string>("--size", [&o](const std::string& text) { parse_size(o, text); },
+                                            "short for --set view.size=[W, H]")
+           ->type_name("WxH");
+     }},
+    {"csv",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--csv", o.csv, "write comma-separated values; - is standard output")->required();
+     }},
+    {"markdown",
+     [](CLI::App& app, Options& o) { app.add_flag("--markdown", o.markdown, "with parameters: docs/reference.md"); }},
+};
+
+bool takes(const Command& command, std::string_view option) {
+  return fmt::format(" {} ", command.options).find(fmt::format(" {} ", option)) != std::string::npos;
+}
+
+void add_command(CLI::App& program, const Command& command, Options& options) {
+  CLI::App* sub = program.add_subcommand(std::string(command.name), std::string(command.meaning));
+  if (!command.word.empty()) {
+    CLI::Option* word = sub->add_option(std::string(command.word), options.word);
+    if (!command.files.empty()) word->required();
+  }
+  if (!command.files.empty()) {
+    CLI::Option* files = sub->add_option(std::string(command.files), options.inputs)->required();
+    if (!command.many_files) files->expected(1);
+  }
+  for (const OptionRow& row : option_rows)
+    if (takes(command, row.name)) row.add(*sub, options);
+}
+
+/// A first word that is no command gets a suggestion, which CLI11 does not give.
+void check_command_word(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string_view> names;
+  for (const Command& command : commands) names.push_back(command.name);
+  if (std::find(names.begin(), names.end(), argv[1]) == names.end())
+    throw std::runtime_error(fmt::format("'{}' is not a command{}", argv[1], sim::suggestion(argv[1], names)));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    check_command_word(argc, argv);
+    Options options;
+    CLI::App program("Tanktread simulates lipid vesicles in Stokes flow and makes movies and figures.", "tanktread");
+    program.set_version_flag("--version", "tanktread " + version() + " (" + build() + ")");
+    program.require_subcommand(1);
+    for (const Command& command : commands) add_command(program, command, options);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+      return program.exit(success);
+    } catch (const CLI::ParseError& error) {
+      fmt::print(stderr, "tanktread: {}\n", error.what());
+      return 2;
+    }
+    render::parse_gl_choice(options.gl);
+    watch_signals();
+    for (const Command& command : commands)
+      if (program.got_subcommand(std::string(command.name))) {
+        options.command = command.name;
+        return command.function(options);
+      }
+    return 2;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "tanktread: there is not enough memory\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "tanktread: {}\n", error.what());
+  }
+  return 1;
+}
+
+}  // namespace app

@@ -1,0 +1,45 @@
+// The commands, a row each: what the command line offers, what runs, what `tanktread --help` and the README say.
+#pragma once
+
+#include "options.h"
+
+#include <string_view>
+
+namespace app {
+
+/// Each returns the exit status: 0, 1 after a failure that was reported, 130 after Ctrl-C. Other errors are exceptions.
+using CommandFunction = int (*)(const Options&);
+
+int run(const Options&);
+int simulate(const Options&);
+int render(const Options&);
+int figure(const Options&);
+int info(const Options&);
+int export_table(const Options&);
+int list(const Options&);
+
+struct Command {
+  std::string_view name, meaning;
+  std::string_view word;     ///< what the first positional argument is called; empty: there is none but files
+  std::string_view files;    ///< what the files are called; empty: none
+  bool many_files;
+  std::string_view options;  ///< the options it takes, separated by spaces
+  CommandFunction function;
+};
+
+inline constexpr Command commands[] = {
+    {"run", "simulate a scene, then draw its frames, movie and figures into one folder", "", "SCENE", false,
+     "output jobs set steps dry-run quiet gl shader-dir force", run},
+    {"simulate", "the simulation alone: writes a trajectory, or continues one with --resume", "", "SCENE", false,
+     "output jobs set steps dry-run quiet resume force", simulate},
+    {"render", "the pictures alone: draws a trajectory again with another view or style", "", "TRAJECTORY", false,
+     "output jobs set quiet gl shader-dir shard style size", render},
+    {"figure", "a figure as PNG, SVG and PDF, with its numbers as CSV", "NAME", "TRAJECTORY", true, "output set quiet",
+     figure},
+    {"info", "what a trajectory, a scene or a frame holds", "", "FILE", false, "set", info},
+    {"export", "a table of measures: one row per saved state and vesicle", "", "TRAJECTORY", false, "csv", export_table},
+    {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, parameters", "KIND", "", false, "markdown",
+     list},
+};
+
+}  // namespace app

@@ -1,0 +1,61 @@
+// Commands that only look: info, export, list.
+#include "catalogues.h"
+#include "commands.h"
+#include "csv.h"
+#include "output.h"
+#include "reference.h"
+#include "scene_file.h"
+#include "summary.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace app {
+
+int info(const Options& options) {
+  const std::filesystem::path& path = options.inputs.front();
+  if (!std::filesystem::is_regular_file(path))
+    throw std::runtime_error(fmt::format("there is no file '{}'", path.string()));
+  char start[8] = {};
+  std::ifstream(path, std::ios::binary).read(start, sizeof start);
+  const std::string_view signature(start, sizeof start);
+  if (signature == "\211HDF\r\n\032\n") fmt::print("{}", trajectory_summary(path));
+  else if (signature == "\211PNG\r\n\032\n") fmt::print("{}", picture_summary(path));
+  else fmt::print("{}", scene_summary(read_scene(path, options.set)));
+  return 0;
+}
+
+int export_table(const Options& options) {
+  const sim::TrajectoryReader trajectory(options.inputs.front());
+  write_whole_file(options.csv, csv_text(trajectory));
+  return 0;
+}
+
+int list(const Options& options) {
+  if (options.markdown && options.word != "parameters")
+    throw std::runtime_error("--markdown goes with 'list parameters'");
+  if (options.word == "parameters") {
+    fmt::print("{}", options.markdown ? reference_page() : parameter_list());
+    return 0;
+  }
+  std::vector<std::string_view> names;
+  for (const Catalogue& catalogue : catalogues()) {
+    names.push_back(catalogue.name);
+    if (options.word.empty()) fmt::print("{:<12} {}\n", catalogue.name, catalogue.meaning);
+    if (options.word != catalogue.name) continue;
+    for (const auto& row : catalogue.rows) {
+      std::string keys;
+      for (const std::string_view key : row.keys) keys += fmt::format("{}{}", keys.empty() ? "; keys: " : ", ", key);
+      fmt::print("{:<20} {}{}\n", row.name, row.meaning, keys);
+    }
+    return 0;
+  }
+  names.push_back("parameters");
+  if (!options.word.empty())
+    throw std::runtime_error(fmt::format("'{}' is not a catalogue{}", options.word, sim::suggestion(options.word, names)));
+  fmt::print("{:<12} {}\n", "parameters", "every key of a scene file");
+  return 0;
+}
+
+}  // namespace app

@@ -1,0 +1,118 @@
+// Commands that simulate: run, simulate.
+#include "commands.h"
+#include "figures.h"
+#include "frames.h"
+#include "interrupt.h"
+#include "output.h"
+#include "scene_file.h"
+#include "scene_text.h"
+#include "simulation.h"
+#include "summary.h"
+
+#include "render/context.h"
+
+#include <fmt/format.h>
+
+namespace app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The scene as the command line changes it.
+Settings requested_scene(const Options& options) {
+  Settings settings = read_scene(options.inputs.front(), options.set);
+  if (options.jobs > 0) settings.scene.numerics.threads = options.jobs;
+  return settings;
+}
+
+void say(const Options& options, const std::string& line) {
+  if (!options.quiet) fmt::print("{}\n", line);
+}
+
+/// Tells how a simulation ended; the exit status.
+int report_end(const SimulationReport& report, const fs::path& trajectory, const Options& options) {
+  const std::string there = fmt::format("{}: {} states, to time {:.6g}", trajectory.string(), report.states, report.time);
+  if (report.interrupted) {
+    fmt::print(stderr, "tanktread: interrupted; {}; the same command {}continues\n", there,
+               options.command == "simulate" ? "with --resume " : "");
+    return interrupted_status;
+  }
+  if (!report.stopped.empty()) {
+    fmt::print(stderr, "tanktread: the simulation stopped: {}; {}\n", report.stopped, there);
+    return 1;
+  }
+  say(options, there + (report.already_finished ? ", finished before" : ""));
+  return 0;
+}
+
+/// The resolved scene.toml must not take the place of a scene that somebody wrote.
+void protect_scene(const fs::path& scene, const fs::path& folder) {
+  std::error_code error;
+  const fs::path resolved = folder / "scene.toml";
+  if (fs::equivalent(scene, resolved, error) && read_whole_file(scene) != write_scene(read_scene(scene)))
+    throw std::runtime_error(fmt::format("the resolved scene would overwrite '{}' itself; give another -o", scene.string()));
+}
+
+/// The plan and the resolved scene: valid as a scene file itself.
+int print_plan(const Settings& settings) {
+  fmt::print("{}\n{}", scene_summary(settings), write_scene(settings));
+  return 0;
+}
+
+}  // namespace
+
+int run(const Options& options) {
+  const Settings settings = requested_scene(options);
+  const fs::path folder = options.output.empty() ? fs::path("out") / options.inputs.front().stem() : options.output;
+  protect_scene(options.inputs.front(), folder);
+  if (options.dry_run) {
+    inspect_folder(folder, settings, options.force);
+    return print_plan(settings);
+  }
+  // Before hours of simulation: can there be pictures at all?
+  render::GlContext(render::parse_gl_choice(options.gl));
+  const FolderState state = claim_folder(folder, settings, options.force);
+  const fs::path trajectory = folder / "trajectory.h5";
+  SimulationReport report;
+  try {
+    report = state != FolderState::fresh && fs::exists(trajectory) ? simulate_further(settings, trajectory, options)
+                                                                   : simulate_new(settings, trajectory, options);
+  } catch (...) {
+    release_folder(folder);
+    throw;
+  }
+  const int status = report_end(report, trajectory, options);
+  if (report.interrupted) return status;
+
+  // A simulation that stopped early is drawn as far as it went: that is where one looks for the reason.
+  const sim::TrajectoryReader reader(trajectory);
+  const FrameReport frames = render_frames(reader, settings, folder, options, state != FolderState::same);
+  if (frames.interrupted) {
+    fmt::print(stderr, "tanktread: interrupted; {} frames are in '{}'; the same command continues\n",
+               frames.drawn + frames.kept, (folder / "frames").string());
+    return interrupted_status;
+  }
+  say(options, fmt::format("{}: {} frames drawn, {} kept", (folder / "frames").string(), frames.drawn, frames.kept));
+  if (frames.movie) say(options, (folder / "movie.mp4").string());
+  if (!frames.remark.empty()) fmt::print(stderr, "tanktread: {}; the frames are in '{}'\n", frames.remark, (folder / "frames").string());
+  for (const render::FigureParameters& figure : settings.figures) {
+    const fs::path stem = folder / (figure.out.empty() ? figure.kind : figure.out);
+    for (const fs::path& file : draw_figure({{reader, settings, {}}}, figure, stem)) say(options, file.string());
+  }
+  return status;
+}
+
+int simulate(const Options& options) {
+  const Settings settings = requested_scene(options);
+  const fs::path file = options.output.empty() ? fs::path(options.inputs.front().stem().string() + ".h5") : options.output;
+  const bool exists = fs::exists(file);
+  if (exists && !options.resume && !options.force)
+    throw std::runtime_error(fmt::format("'{}' exists; --resume continues it, --force replaces it", file.string()));
+  if (options.dry_run) return print_plan(settings);
+  const SimulationReport report = exists && options.resume ? simulate_further(settings, file, options)
+                                                           : simulate_new(settings, file, options);
+  return report_end(report, file, options);
+}
+
+}  // namespace app

@@ -1,0 +1,17 @@
+// `tanktread export --csv`: one row per saved state and vesicle.
+#pragma once
+
+#include "sim/trajectory.h"
+
+namespace app {
+
+/// Names and meanings of the columns, in order.
+struct CsvColumn {
+  std::string name, meaning;
+};
+std::vector<CsvColumn> csv_columns();
+
+/// Header row and one row per saved state and vesicle; numbers with the digits that give the same number again.
+std::string csv_text(const sim::TrajectoryReader&);
+
+}  // namespace app

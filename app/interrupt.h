@@ -1,0 +1,13 @@
+// Ctrl-C and SIGTERM ask for an end: the step or frame under way is finished and saved. A second Ctrl-C ends at once.
+#pragma once
+
+namespace app {
+
+/// Exit status after an interruption.
+inline constexpr int interrupted_status = 130;
+
+/// From here on SIGINT and SIGTERM set a flag, and a closed pipe is a write error rather than the end.
+void watch_signals();
+bool interrupted();
+
+}  // namespace app

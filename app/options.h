@@ -1,0 +1,27 @@
+// What a command line says, one struct for all commands; each command reads what concerns it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace app {
+
+struct Options {
+  std::string command;
+  std::string word;                            ///< `figure NAME`, `list KIND`
+  std::vector<std::filesystem::path> inputs;   ///< scene, trajectories, or a file to look at
+  std::filesystem::path output;                ///< -o
+  std::vector<std::string> set;                ///< --set, in order
+  std::optional<std::int64_t> steps;           ///< --steps
+  int jobs = 0;                                ///< -j; 0: as the scene says
+  std::string gl = "auto";
+  std::filesystem::path shader_dir;
+  int shard = 0, shards = 1;                   ///< --shard 0/4: frames 0, 4, 8, ...
+  std::filesystem::path csv;                   ///< --csv; "-": standard output
+  bool dry_run = false, quiet = false, resume = false, force = false, markdown = false;
+};
+
+}  // namespace app

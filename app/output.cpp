@@ -1,0 +1,100 @@
+#include "output.h"
+
+#include "scene_file.h"
+#include "scene_text.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+
+namespace app {
+
+namespace fs = std::filesystem;
+
+void write_whole_file(const fs::path& path, const std::string& text) {
+  if (path == "-") {
+    std::cout << text << std::flush;
+    if (!std::cout) throw std::runtime_error("cannot write to standard output");
+    return;
+  }
+  const fs::path draft = path.string() + ".tmp";
+  std::ofstream out(draft, std::ios::binary);
+  out << text;
+  out.close();
+  const int reason = errno;
+  std::error_code error;
+  if (out) fs::rename(draft, path, error);
+  if (out && !error) return;
+  const std::string why = error ? error.message() : std::strerror(reason);
+  fs::remove(draft, error);
+  throw std::runtime_error(fmt::format("cannot write '{}': {}", path.string(), why));
+}
+
+std::string read_whole_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void remove_frames(const fs::path& folder, std::int64_t first) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string stem = entry.path().stem().string();
+    const bool ours = entry.path().extension() == ".png" && stem.size() >= 6 && stem.size() < 12 &&
+                      stem.find_first_not_of("0123456789") == std::string::npos;
+    if (ours && std::stoll(stem) >= first) fs::remove(entry.path(), error);
+  }
+}
+
+FolderState inspect_folder(const fs::path& folder, const Settings& settings, bool force) {
+  if (fs::exists(folder) && !fs::is_directory(folder))
+    throw std::runtime_error(fmt::format("'{}' is not a folder", folder.string()));
+  const fs::path scene = folder / "scene.toml";
+  if (!fs::exists(scene)) {
+    if (fs::exists(folder / "trajectory.h5") && !force)
+      throw std::runtime_error(fmt::format("folder '{}' holds a trajectory without its scene.toml; give another -o, or "
+                                           "--force to replace it", folder.string()));
+    return FolderState::fresh;
+  }
+  Settings there;
+  try {
+    there = parse_scene(read_whole_file(scene), scene.string(), folder, {}, SceneUse::draw);
+  } catch (const std::exception& error) {
+    if (force) return FolderState::fresh;
+    throw std::runtime_error(fmt::format("folder '{}' holds a scene that cannot be read ({}); give another -o, or --force "
+                                         "to replace it", folder.string(), error.what()));
+  }
+  if (force) return FolderState::fresh;
+  if (physics_hash(there.scene) == physics_hash(settings.scene)) {
+    there.scene.numerics.threads = settings.scene.numerics.threads;
+    return write_scene(there) == write_scene(settings) ? FolderState::same : FolderState::same_physics;
+  }
+  throw std::runtime_error(fmt::format("folder '{}' belongs to another scene, '{}'; give another -o, or --force to replace "
+                                       "it", folder.string(), there.scene.title));
+}
+
+void release_folder(const fs::path& folder) {
+  if (fs::exists(folder / "trajectory.h5")) return;
+  std::error_code error;
+  fs::remove(folder / "scene.toml", error);
+  fs::remove(folder, error);  // if it is empty
+}
+
+FolderState claim_folder(const fs::path& folder, const Settings& settings, bool force) {
+  const FolderState state = inspect_folder(folder, settings, force);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
+  // Only what an earlier run of ours left there: its scene.toml says so.
+  if (state == FolderState::fresh && fs::exists(folder / "scene.toml")) {
+    for (const char* old : {"trajectory.h5", "movie.mp4", "scene.toml"}) fs::remove(folder / old, error);
+    remove_frames(folder / "frames", 0);
+  }
+  if (state != FolderState::same) write_whole_file(folder / "scene.toml", write_scene(settings));
+  return state;
+}
+
+}  // namespace app

@@ -1,0 +1,215 @@
+#include "scene_file.h"
+
+#include "catalogues.h"
+#include "scene_overrides.h"
+#include "scene_values.h"
+
+#include "sim/shapes.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+
+namespace app {
+
+namespace {
+
+const Catalogue* find_catalogue(std::string_view name) {
+  for (const Catalogue& c : catalogues())
+    if (c.name == name) return &c;
+  return nullptr;
+}
+
+const Selector* find_selector(std::string_view section) {
+  for (const Selector& s : selectors)
+    if (s.section == section) return &s;
+  return nullptr;
+}
+
+bool contains(const std::vector<std::string_view>& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// Kinds of a table that read a key; empty: the key belongs to all kinds.
+std::vector<std::string_view> owners(std::string_view section, std::string_view key) {
+  std::vector<std::string_view> names;
+  if (const Selector* selector = find_selector(section))
+    for (const auto& row : find_catalogue(selector->catalogue)->rows)
+      if (contains(row.keys, key)) names.push_back(row.name);
+  return names;
+}
+
+const toml::source_region& source_of(const toml::table& table, std::string_view key) {
+  const toml::node* node = table.get(key);
+  return node ? node->source() : table.source();
+}
+
+/// Is an optional, text or list member of a kind that needs it not given?
+template <class T> bool missing(const T&) { return false; }
+template <class T> bool missing(const std::optional<T>& value) { return !value; }
+template <class T> bool missing(const std::vector<T>& value) { return value.empty(); }
+bool missing(const std::string& value) { return value.empty(); }
+
+template <class P> std::string_view selected(const P&) { return {}; }
+std::string_view selected(const sim::FlowParameters& p) { return p.kind; }
+std::string_view selected(const sim::VesicleParameters& p) { return p.shape; }
+
+struct Reader {
+  const toml::table& root;
+  std::string name;
+  std::filesystem::path folder;
+  SceneUse use;
+
+  // What no single range can say.
+  template <class P> void check(const toml::table&, P&) const {}
+  void check(const toml::table& table, sim::FlowParameters& p) const {
+    if (p.until <= p.from) fail_at(source_of(table, "until"), fmt::format("'until' must be after 'from', {}", p.from));
+    for (const TimeFactorKey& k : time_factor_keys)
+      if (table.contains(k.key) && p.time_factor != k.factor)
+        fail_at(source_of(table, k.key), fmt::format("'{}' is a key of time_factor '{}', not of '{}'", k.key, k.factor,
+                                                     p.time_factor));
+  }
+  void check(const toml::table& table, render::ViewParameters& p) const {
+    if (p.size.size() != 2) fail_at(source_of(table, "size"), "'size' must be two whole numbers, [width, height]");
+  }
+  void check(const toml::table& table, sim::TimeParameters& p) const {
+    if (p.end / p.step > 1e9)
+      fail_at(source_of(table, "step"), fmt::format("{:.3g} steps are too many; 'step' must be longer", p.end / p.step));
+  }
+  void check(const toml::table& table, sim::VesicleParameters& p) const {
+    if (p.area && p.radius) fail_at(source_of(table, "radius"), "give 'area' or 'radius', not both");
+    if (p.axis.norm() == 0) fail_at(source_of(table, "axis"), "'axis' must not be the zero vector");
+    for (const auto& term : p.coefficients)
+      if (term[0] < 0 || term[0] != std::floor(term[0]) || term[1] != std::floor(term[1]) || std::abs(term[1]) > term[0])
+        fail_at(source_of(table, "coefficients"),
+                fmt::format("[{}, {}, {}] is no term [n, m, value] with whole n >= 0 and |m| <= n", term[0], term[1],
+                            term[2]));
+    if (use == SceneUse::draw) return;
+    if (p.shape == "file") {
+      const std::filesystem::path path = std::filesystem::absolute(folder / p.file).lexically_normal();
+      if (!std::filesystem::is_regular_file(path))
+        fail_at(source_of(table, "file"), fmt::format("there is no file '{}'", path.string()));
+      p.file = path.string();
+    }
+    try {
+      sim::initial_position(p);
+    } catch (const std::exception& error) {
+      fail_at(source_of(table, p.shape == "file" ? "file" : "shape"), error.what());
+    }
+  }
+
+  template <class P>
+  void read_table(const sim::Section& section, const toml::table& table, P& parameters) const {
+    std::vector<std::string_view> known;
+    visit(parameters, [&](const sim::Parameter& p, auto&) { known.push_back(p.name); });
+    for (const auto& [key, node] : table)
+      if (!contains(known, key.str()))
+        fail_at(key.source(), fmt::format("unknown key '{}' in [{}]{}", key.str(), section.name,
+                                          sim::suggestion(key.str(), known)));
+    visit(parameters, [&](const sim::Parameter& p, auto& value) {
+      if (const toml::node* node = table.get(p.name)) read_value(p, *node, value);
+      else if (p.required) fail_at(table.source(), fmt::format("[{}] needs '{}': {}", section.name, p.name, p.meaning));
+    });
+    check_kind(section, table, parameters);
+    check(table, parameters);
+  }
+
+  /// Keys of other kinds are refused; keys of this kind that have no default are required.
+  template <class P>
+  void check_kind(const sim::Section& section, const toml::table& table, P& parameters) const {
+    const Selector* selector = find_selector(section.name);
+    if (!selector) return;
+    const std::string_view kind = selected(parameters);
+    for (const auto& [key, node] : table)
+      if (const auto kinds = owners(section.name, key.str()); !kinds.empty() && !contains(kinds, kind))
+        fail_at(key.source(), fmt::format("'{}' is {}", key.str(), key_belongs_to(section.name, key.str(), kind)));
+    visit(parameters, [&](const sim::Parameter& p, auto& value) {
+      if (contains(owners(section.name, p.name), kind) && missing(value))
+        fail_at(source_of(table, selector->key), fmt::format("{} '{}' needs the key '{}', {}", selector->noun, kind,
+                                                             p.name, p.meaning));
+    });
+  }
+
+  template <class P>
+  void operator()(const sim::Section& section, P& parameters) const {
+    const toml::node* node = root.get(section.name);
+    if (!node && section.required) throw std::runtime_error(fmt::format("{}: the table [{}] is missing", name, section.name));
+    if (!node) return;
+    if (!node->is_table()) fail_at(node->source(), fmt::format("'{}' must be one table, [{}]", section.name, section.name));
+    read_table(section, *node->as_table(), parameters);
+  }
+
+  template <class P>
+  void operator()(const sim::Section& section, std::vector<P>& list) const {
+    const toml::node* node = root.get(section.name);
+    if (!node && section.required)
+      throw std::runtime_error(fmt::format("{}: the table [[{}]] is missing", name, section.name));
+    if (!node) return;
+    if (const toml::table* table = node->as_table()) return read_table(section, *table, list.emplace_back());
+    const toml::array* tables = node->as_array();
+    if (!tables) fail_at(node->source(), fmt::format("'{}' must be a table, [{}] or [[{}]]", section.name, section.name,
+                                                     section.name));
+    for (const toml::node& item : *tables) {
+      if (!item.is_table()) fail_at(item.source(), fmt::format("'{}' must hold tables", section.name));
+      read_table(section, *item.as_table(), list.emplace_back());
+    }
+    if (list.empty() && section.required)
+      throw std::runtime_error(fmt::format("{}: [[{}]] is empty", name, section.name));
+  }
+};
+
+}  // namespace
+
+bool key_applies(std::string_view section, std::string_view key, std::string_view kind, std::string_view time_factor) {
+  const auto kinds = owners(section, key);
+  if (!kinds.empty() && !contains(kinds, kind)) return false;
+  if (section != "flow") return true;
+  for (const TimeFactorKey& k : time_factor_keys)
+    if (k.key == key && k.factor != time_factor) return false;
+  return true;
+}
+
+std::string key_belongs_to(std::string_view section, std::string_view key, std::string_view kind) {
+  std::string names;
+  for (const std::string_view owner : owners(section, key)) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", owner);
+  return fmt::format("a key of {} {}, not of '{}'", find_selector(section)->noun, names, kind);
+}
+
+Settings parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder,
+                     const std::vector<std::string>& overrides, SceneUse use) {
+  toml::table root;
+  try {
+    root = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    fail_at(error.source(), error.description());
+  }
+  for (const std::string& change : overrides) apply_override(root, change);
+
+  Settings settings;
+  std::vector<std::string_view> known{"title"};
+  visit_sections(settings, [&](const sim::Section& section, auto&) { known.push_back(section.name); });
+  for (const auto& [key, node] : root)
+    if (!contains(known, key.str()))
+      fail_at(key.source(), fmt::format("unknown {} '{}'{}", node.is_table() || node.is_array() ? "table" : "key",
+                                        key.str(), sim::suggestion(key.str(), known)));
+  if (const toml::node* title = root.get("title"))
+    read_value(sim::Parameter{.name = "title", .unit = "", .meaning = "title of the scene"}, *title,
+               settings.scene.title);
+  visit_sections(settings, Reader{root, name, folder, use});
+  return settings;
+}
+
+Settings read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    throw std::runtime_error(fmt::format("{}: there is no such scene file", path.string()));
+  if (!std::filesystem::is_regular_file(path, error))
+    throw std::runtime_error(fmt::format("{}: is not a file", path.string()));
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return parse_scene(text, path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides);
+}
+
+}  // namespace app

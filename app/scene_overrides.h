@@ -1,0 +1,12 @@
+// `--set section.key=value`: changes to a parsed scene before it is interpreted.
+#pragma once
+
+#include "scene_values.h"
+
+namespace app {
+
+/// Lays one override over the scene: `time.step=0.05`, `vesicle.order=12` (every vesicle), `vesicle.0.order=12`.
+/// The value is TOML; a bare word is taken as text.
+void apply_override(toml::table& scene, const std::string& override_text);
+
+}  // namespace app

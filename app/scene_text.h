@@ -1,0 +1,25 @@
+// The resolved scene: every parameter with the value it has, as a scene file that gives the same scene again.
+#pragma once
+
+#include "settings.h"
+
+namespace app {
+
+std::string write_scene(const Settings&);
+/// Only the tables of the physics.
+std::string write_scene(const sim::Scene&);
+
+/// 16 hexadecimal digits of what the simulation, or a picture, depends on; the number of threads is not of that.
+std::string physics_hash(const sim::Scene&);
+std::string picture_hash(const Settings&);
+
+/// A value in TOML, shortest digits that give the same number.
+std::string toml_value(bool), toml_value(int), toml_value(double), toml_value(const std::string&);
+std::string toml_value(const sim::Vec3&), toml_value(const std::array<double, 3>&);
+template <class T> std::string toml_value(const std::vector<T>& list) {
+  std::string text;
+  for (const T& item : list) text += (text.empty() ? "" : ", ") + toml_value(item);
+  return "[" + text + "]";
+}
+
+}  // namespace app

@@ -1,0 +1,111 @@
+#include "scene_values.h"
+
+#include "catalogues.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace app {
+
+void fail_at(const toml::source_region& where, std::string_view sentence) {
+  const std::string name = where.path ? *where.path : std::string("scene");
+  if (name.starts_with("--set") || !where.begin)
+    throw std::runtime_error(fmt::format("{}: {}", name, sentence));
+  throw std::runtime_error(fmt::format("{}:{}:{}: {}", name, where.begin.line, where.begin.column, sentence));
+}
+
+std::string range_text(const sim::Parameter& p) {
+  std::string text;
+  if (p.minimum > -sim::unlimited) text = fmt::format("{} {}", p.exclusive_minimum ? "above" : "at least", p.minimum);
+  if (p.maximum < sim::unlimited)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", p.exclusive_maximum ? "below" : "at most", p.maximum);
+  return text;
+}
+
+std::string range_error(const sim::Parameter& p, double value) {
+  const bool low = p.exclusive_minimum ? !(value > p.minimum) : !(value >= p.minimum);
+  const bool high = p.exclusive_maximum ? !(value < p.maximum) : !(value <= p.maximum);
+  const bool unlimited = p.minimum == -sim::unlimited && p.maximum == sim::unlimited;
+  if (std::isnan(value)) return fmt::format("'{}' must be a number, not nan", p.name);
+  if (unlimited || !(low || high)) return {};
+  return fmt::format("'{}' must be {}, not {}", p.name, range_text(p), value);
+}
+
+namespace {
+
+std::string as_written(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::string: return "the text \"" + node.as_string()->get() + "\"";
+    case toml::node_type::integer: return "the number " + std::to_string(node.as_integer()->get());
+    case toml::node_type::floating_point: return fmt::format("the number {}", node.as_floating_point()->get());
+    case toml::node_type::boolean: return node.as_boolean()->get() ? "true" : "false";
+    case toml::node_type::array: return "a list";
+    case toml::node_type::table: return "a table";
+    default: return "a date or time";
+  }
+}
+
+[[noreturn]] void wrong_type(const sim::Parameter& p, const toml::node& node, std::string_view wanted) {
+  fail_at(node.source(), fmt::format("'{}' must be {}, not {}", p.name, wanted, as_written(node)));
+}
+
+void check_range(const sim::Parameter& p, const toml::node& node, double value) {
+  if (const std::string error = range_error(p, value); !error.empty()) fail_at(node.source(), error);
+}
+
+}  // namespace
+
+void read_value(const sim::Parameter& p, const toml::node& node, bool& value) {
+  if (!node.is_boolean()) wrong_type(p, node, "true or false");
+  value = node.as_boolean()->get();
+}
+
+void read_value(const sim::Parameter& p, const toml::node& node, int& value) {
+  if (p.zero_is_auto && node.is_string() && node.as_string()->get() == "auto") {
+    value = 0;
+    return;
+  }
+  if (!node.is_integer()) wrong_type(p, node, p.zero_is_auto ? "\"auto\" or a whole number" : "a whole number");
+  const std::int64_t number = node.as_integer()->get();
+  check_range(p, node, static_cast<double>(number));
+  if (number != static_cast<int>(number)) fail_at(node.source(), fmt::format("'{}' is too large: {}", p.name, number));
+  value = static_cast<int>(number);
+}
+
+void read_value(const sim::Parameter& p, const toml::node& node, double& value) {
+  if (node.is_integer()) value = static_cast<double>(node.as_integer()->get());
+  else if (node.is_floating_point()) value = node.as_floating_point()->get();
+  else wrong_type(p, node, "a number");
+  check_range(p, node, value);
+  if (std::isinf(value) && p.name != "until")
+    fail_at(node.source(), fmt::format("'{}' must be finite", p.name));
+}
+
+void read_value(const sim::Parameter& p, const toml::node& node, std::string& value) {
+  if (!node.is_string()) wrong_type(p, node, "a text in quotes");
+  value = node.as_string()->get();
+  std::vector<std::string_view> known(p.choices.begin(), p.choices.end());
+  std::string list;
+  for (const Catalogue& catalogue : catalogues())
+    if (catalogue.name == p.catalogue) {
+      known = sim::row_names(catalogue.rows);
+      list = fmt::format("; 'tanktread list {}' shows all", catalogue.name);
+    }
+  if (known.empty() || std::find(known.begin(), known.end(), value) != known.end()) return;
+  fail_at(node.source(), fmt::format("'{}' is no known {}{}{}", value, p.name, sim::suggestion(value, known), list));
+}
+
+void read_value(const sim::Parameter& p, const toml::node& node, std::array<double, 3>& value) {
+  const toml::array* list = node.as_array();
+  if (!list || list->size() != 3) wrong_type(p, node, "a list of three numbers, [.., .., ..]");
+  for (std::size_t i = 0; i < 3; ++i) read_value(p, *list->get(i), value[i]);
+}
+
+void read_value(const sim::Parameter& p, const toml::node& node, sim::Vec3& value) {
+  std::array<double, 3> three{};
+  read_value(p, node, three);
+  value = sim::Vec3(three[0], three[1], three[2]);
+}
+
+}  // namespace app

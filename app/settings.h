@@ -1,0 +1,41 @@
+// A whole scene file: the physics that `sim` declares and the pictures that `render` declares.
+#pragma once
+
+#include "render/parameters.h"
+#include "sim/parameters.h"
+
+namespace app {
+
+struct Settings {
+  sim::Scene scene;
+  render::ViewParameters view;
+  render::MovieParameters movie;
+  std::vector<render::FigureParameters> figures;
+};
+
+/// Calls v(const Section&, struct or vector of structs) for each table of a scene file, in its order.
+template <class S, class V>
+  requires std::same_as<std::remove_const_t<S>, Settings>
+void visit_sections(S& settings, V&& v) {
+  sim::visit_sections(settings.scene, v);
+  v(sim::Section{"view", "how a frame looks", false}, settings.view);
+  v(sim::Section{"movie", "which frames there are", false}, settings.movie);
+  v(sim::Section{"figure", "one figure a table", false}, settings.figures);
+}
+
+/// The key whose word decides which other keys of a table are read, e.g. `kind` of [flow].
+struct Selector {
+  std::string_view section, key, catalogue;
+  std::string_view noun;  ///< in messages: flow 'shear'
+};
+inline constexpr std::array<Selector, 2> selectors{{{"flow", "kind", "flows", "flow"},
+                                                    {"vesicle", "shape", "shapes", "shape"}}};
+
+/// Keys of a flow's time factor.
+struct TimeFactorKey {
+  std::string_view key, factor;
+};
+inline constexpr std::array<TimeFactorKey, 4> time_factor_keys{
+    {{"frequency", "oscillating"}, {"phase", "oscillating"}, {"from", "step"}, {"until", "step"}}};
+
+}  // namespace app

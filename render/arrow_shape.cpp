@@ -1,0 +1,40 @@
+#include "arrow_shape.h"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <numbers>
+
+namespace render {
+
+ArrowShape arrow_shape() {
+  constexpr float head_length = 6.4F, head_radius = 2.6F;
+  // x = -tip is the point itself; exactly 0 would count as the tail
+  constexpr float tip = 1e-3F;
+  ArrowShape shape;
+  const auto put = [&](float x, float radius, float angle, const Eigen::Vector3f& n) {
+    for (const float v : {x, radius * std::cos(angle), radius * std::sin(angle)}) shape.position.push_back(v);
+    for (const float v : {n.x(), n.y(), n.z()}) shape.normal.push_back(v);
+  };
+  const float slope = std::atan2(head_radius, head_length);
+  for (int k = 0; k < arrow_shape_sides; ++k) {
+    const float step = 2 * std::numbers::pi_v<float> / arrow_shape_sides;
+    const float a = step * static_cast<float>(k), b = step * static_cast<float>(k + 1), middle = (a + b) / 2;
+    const auto round = [](float f) { return Eigen::Vector3f(0, std::cos(f), std::sin(f)); };
+    const auto cone = [&](float f) {
+      return Eigen::Vector3f(std::sin(slope), std::cos(slope) * std::cos(f), std::cos(slope) * std::sin(f));
+    };
+    const Eigen::Vector3f back(-1, 0, 0);
+    // shaft
+    put(0, 1, a, round(a)), put(-head_length, 1, a, round(a)), put(-head_length, 1, b, round(b));
+    put(0, 1, a, round(a)), put(-head_length, 1, b, round(b)), put(0, 1, b, round(b));
+    // tail disc, collar, cone
+    put(0, 0, a, back), put(0, 1, a, back), put(0, 1, b, back);
+    put(-head_length, 0, a, back), put(-head_length, head_radius, a, back), put(-head_length, head_radius, b, back);
+    put(-head_length, head_radius, a, cone(a)), put(-tip, 0, middle, cone(middle)),
+        put(-head_length, head_radius, b, cone(b));
+  }
+  return shape;
+}
+
+}  // namespace render

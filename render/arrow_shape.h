@@ -1,0 +1,18 @@
+// The arrow of the flow field as triangles.
+#pragma once
+
+#include <vector>
+
+namespace render {
+
+inline constexpr int arrow_shape_sides = 20;
+inline constexpr int arrow_shape_vertices = arrow_shape_sides * (6 + 3 + 3 + 3);
+
+/// An arrow along x whose shaft has radius 1. Vertices with x < 0 belong to the head and are measured back from the tip
+/// in shaft radii; the tail lies at x = 0. Three floats a vertex.
+struct ArrowShape {
+  std::vector<float> position, normal;
+};
+ArrowShape arrow_shape();
+
+}  // namespace render

@@ -1,0 +1,123 @@
+#include "canvas.h"
+
+#include "image.h"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace render {
+namespace {
+
+struct Destroy {
+  void operator()(cairo_surface_t* s) const { cairo_surface_destroy(s); }
+  void operator()(cairo_t* c) const { cairo_destroy(c); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, Destroy>;
+using Context = std::unique_ptr<cairo_t, Destroy>;
+
+void check(cairo_status_t status, const std::filesystem::path& path) {
+  if (status != CAIRO_STATUS_SUCCESS) throw std::runtime_error(path.string() + ": " + cairo_status_to_string(status));
+}
+
+void paint(cairo_surface_t* surface, const Drawing& drawing, double scale, const std::filesystem::path& path) {
+  const Font font;
+  const Context cairo(cairo_create(surface));
+  cairo_scale(cairo.get(), scale, scale);
+  cairo_set_source_rgb(cairo.get(), 1, 1, 1);
+  cairo_paint(cairo.get());
+  drawing.paint(cairo.get(), font);
+  check(cairo_status(cairo.get()), path);
+}
+
+cairo_status_t append(void* text, const unsigned char* data, unsigned int length) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+// Cairo numbers its surfaces through the life of the process and writes the number as an id that nothing refers to.
+std::string without_surface_numbers(const std::string& svg) {
+  constexpr std::string_view mark = "id=\"surface";
+  std::string result;
+  std::size_t from = 0;
+  for (std::size_t at; (at = svg.find(mark, from)) != std::string::npos; from = svg.find('"', at + mark.size()))
+    result.append(svg, from, at + mark.size() - from);
+  return result.append(svg, from);
+}
+
+}  // namespace
+
+void write_text(const std::filesystem::path& path, std::string_view text) {
+  std::filesystem::path temporary = path;
+  temporary.replace_filename(fmt::format(".{}.{}.tmp", path.filename().string(), ::getpid()));
+  std::FILE* file = std::fopen(temporary.c_str(), "wb");
+  int error = file ? 0 : errno;
+  if (file) {
+    if (std::fwrite(text.data(), 1, text.size(), file) != text.size()) error = errno;
+    if (std::fclose(file) != 0 && !error) error = errno;
+    if (!error && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
+    if (error) std::remove(temporary.c_str());
+  }
+  if (error) throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(error));
+}
+
+void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, double dots_per_inch) {
+  const double scale = dots_per_inch / 72;
+  const int width = static_cast<int>(std::lround(drawing.width * scale));
+  const int height = static_cast<int>(std::lround(drawing.height * scale));
+  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
+  check(cairo_surface_status(surface.get()), path);
+  paint(surface.get(), drawing, scale, path);
+  cairo_surface_flush(surface.get());
+  const unsigned char* data = cairo_image_surface_get_data(surface.get());
+  const int stride = cairo_image_surface_get_stride(surface.get());
+  Image image(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      std::uint32_t v = 0;
+      std::memcpy(&v, data + static_cast<std::ptrdiff_t>(y) * stride + 4 * static_cast<std::ptrdiff_t>(x), sizeof v);
+      std::uint8_t* p = image.at(x, y);
+      p[0] = static_cast<std::uint8_t>(v >> 16);
+      p[1] = static_cast<std::uint8_t>(v >> 8);
+      p[2] = static_cast<std::uint8_t>(v);
+    }
+  write_png(path, image);
+}
+
+void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing) {
+  std::string text;
+  {
+    const Surface surface(cairo_svg_surface_create_for_stream(append, &text, drawing.width, drawing.height));
+    check(cairo_surface_status(surface.get()), path);
+    paint(surface.get(), drawing, 1, path);
+    cairo_surface_finish(surface.get());
+    check(cairo_surface_status(surface.get()), path);
+  }
+  write_text(path, without_surface_numbers(text));
+}
+
+void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing) {
+  std::string text;
+  {
+    const Surface surface(cairo_pdf_surface_create_for_stream(append, &text, drawing.width, drawing.height));
+    check(cairo_surface_status(surface.get()), path);
+    // the time of writing would be the only thing that differs from run to run
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
+    paint(surface.get(), drawing, 1, path);
+    cairo_surface_finish(surface.get());
+    check(cairo_surface_status(surface.get()), path);
+  }
+  write_text(path, text);
+}
+
+}  // namespace render

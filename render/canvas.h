@@ -1,0 +1,27 @@
+// A drawing in points that becomes PNG, SVG and PDF by one and the same function.
+#pragma once
+
+#include "text.h"
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace render {
+
+/// 72 points an inch; y grows downward.
+struct Drawing {
+  double width = 0, height = 0;
+  std::function<void(cairo_t*, const Font&)> paint;
+};
+
+/// Each is written under a temporary name and renamed; throws std::runtime_error with path and reason.
+/// The same drawing gives the same bytes: no dates, no names of machines, text as paths.
+void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, double dots_per_inch = 200);
+void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing);
+void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing);
+
+/// Writes text to a temporary file beside path and renames it.
+void write_text(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace render

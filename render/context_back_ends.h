@@ -1,0 +1,29 @@
+// The back ends of GlContext: each opens its library and makes a context current, or throws.
+#pragma once
+
+#include "context.h"
+
+namespace render {
+
+/// A library or a device is not there: the next back end may be tried.
+struct GlUnavailable : std::exception {
+  std::string sentence;
+  explicit GlUnavailable(std::string s) : sentence(std::move(s)) {}
+  const char* what() const noexcept override { return sentence.c_str(); }
+};
+
+/// File names to try, in this order.
+using LibraryNames = std::vector<const char*>;
+inline const LibraryNames osmesa_libraries{"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"};
+inline const LibraryNames egl_libraries{"libEGL.so.1", "libEGL.so"};
+
+GlContext::BackEnd open_osmesa(const LibraryNames& names = osmesa_libraries);
+
+enum class EglDevices { any, one, software };
+/// device: index among the EGL devices for EglDevices::one.
+GlContext::BackEnd open_egl(EglDevices which, int device, const LibraryNames& names = egl_libraries);
+
+/// dlopen of the first of the names; nullptr when there is none. Never closed: drivers do not survive it.
+void* open_library(const LibraryNames& names);
+
+}  // namespace render

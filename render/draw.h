@@ -1,0 +1,52 @@
+// Draws a frame. draw_frame() reads like the list of its passes: ground, arrows, bodies, outlines, captions.
+#pragma once
+
+#include "context.h"
+#include "gpu.h"
+#include "overlay.h"
+#include "scene.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+namespace render {
+
+/// Everything that outlives a frame: context, compiled variants, buffers. One per thread at most; several contexts in
+/// several threads do not draw faster (software rasterisers share one lock), so use processes for that.
+class Renderer {
+ public:
+  /// shader_dir: take shaders from there instead of the embedded ones. Throws as GlContext does.
+  explicit Renderer(const GlChoice& choice = {}, std::filesystem::path shader_dir = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+
+  const GlInformation& information() const { return context_.information(); }
+  /// "back_end", "GL_RENDERER", "GL_VERSION" for the text chunks of pictures.
+  PngText metadata() const;
+
+ private:
+  friend Image draw_frame(Renderer&, const Frame&);
+  const Program& program(const std::string& name, const std::string& defines);
+  void begin(const Frame&);
+  void draw_ground(const Frame&);
+  void draw_arrows(const Frame&);
+  void draw_body(const Frame&, const Body&);
+  void draw_outline(const Frame&, const Body&);
+  Image finish(const Frame&);
+
+  GlContext context_;
+  std::filesystem::path shader_dir_;
+  std::map<std::string, Program> programs_;  ///< by name and defines
+  VertexArray nothing_, bodies_, arrows_;
+  std::shared_ptr<const MeshPlan> uploaded_plan_;
+  std::optional<Framebuffer> framebuffer_;
+  Image samples_;
+  Font font_;
+};
+
+/// RGB picture of frame.view.size. The same frame gives the same bytes with every software driver of one Mesa version.
+/// Throws std::runtime_error when the driver fails, std::invalid_argument for an unknown style or a bad size.
+Image draw_frame(Renderer& renderer, const Frame& frame);
+
+}  // namespace render

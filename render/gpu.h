@@ -1,0 +1,81 @@
+// Objects that live in an OpenGL context: programs, vertex arrays, the framebuffer. Each frees itself; all need the
+// context that made them to be current and alive.
+#pragma once
+
+#include "gl.h"
+#include "image.h"
+
+#include <Eigen/Dense>
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace render {
+
+/// A compiled pair of shaders.
+class Program {
+ public:
+  /// Throws std::runtime_error with `name` and the compiler's words.
+  Program(const Gl& gl, std::string_view name, const std::string& vertex, const std::string& fragment);
+  ~Program();
+  Program(const Program&) = delete;
+
+  void use() const;
+  // Uniforms of the program in use; names the shader does not have are ignored, since variants drop some.
+  void set(const char* name, float v) const;
+  void set(const char* name, int v) const;
+  void set(const char* name, const Eigen::Vector2f& v) const;
+  void set(const char* name, const Eigen::Vector3f& v) const;
+  void set(const char* name, const Eigen::Matrix4f& v) const;
+  void set(const char* name, std::span<const Eigen::Vector3f> v) const;
+  void set(const char* name, std::span<const Eigen::Vector4f> v) const;
+
+ private:
+  const Gl* gl_;
+  GLuint id_ = 0;
+};
+
+/// Vertex array with float attributes in buffers of their own, filled anew for every body.
+class VertexArray {
+ public:
+  explicit VertexArray(const Gl& gl);
+  ~VertexArray();
+  VertexArray(const VertexArray&) = delete;
+
+  void bind() const;
+  /// Attribute `location` takes `components` floats a vertex from `data`; divisor 1: a value an instance.
+  void attribute(GLuint location, int components, std::span<const float> data, GLuint divisor = 0);
+  void indices(std::span<const std::uint32_t> data);
+
+ private:
+  static constexpr std::size_t attributes = 4;
+  const Gl* gl_;
+  GLuint id_ = 0, index_buffer_ = 0;
+  std::array<GLuint, attributes> buffers_{};
+};
+
+/// RGBA8 + depth. The colours are sRGB-encoded by the shaders; a target that encodes by itself would differ between
+/// processors.
+class Framebuffer {
+ public:
+  /// Throws std::runtime_error when the driver cannot make one that large.
+  Framebuffer(const Gl& gl, int width, int height);
+  ~Framebuffer();
+  Framebuffer(const Framebuffer&) = delete;
+
+  void bind() const;
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// RGBA, bottom row first.
+  void read(Image& into) const;
+
+ private:
+  const Gl* gl_;
+  int width_, height_;
+  GLuint id_ = 0, colour_ = 0, depth_ = 0;
+};
+
+}  // namespace render

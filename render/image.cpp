@@ -1,0 +1,123 @@
+#include "image.h"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace render {
+namespace {
+
+constexpr int linear_steps = 4096;  // the steepest part of the sRGB curve needs 0.8 codes a step, so codes survive
+
+double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
+double srgb_of(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+struct Tables {
+  std::array<std::uint32_t, 256> linear;  // 0..65535
+  std::array<std::uint8_t, linear_steps> encoded;
+};
+
+const Tables& tables() {
+  static const Tables made = [] {
+    Tables t{};
+    for (std::size_t i = 0; i < t.linear.size(); ++i)
+      t.linear[i] = static_cast<std::uint32_t>(std::lround(65535 * linear_of(static_cast<double>(i) / 255)));
+    for (std::size_t i = 0; i < t.encoded.size(); ++i)
+      t.encoded[i] = static_cast<std::uint8_t>(std::lround(255 * srgb_of(static_cast<double>(i) / (linear_steps - 1))));
+    return t;
+  }();
+  return made;
+}
+
+void check_same_size(const Image& a, const Image& b) {
+  if (a.width != b.width || a.height != b.height)
+    throw std::invalid_argument("pictures of different size: " + std::to_string(a.width) + "x" +
+                                std::to_string(a.height) + " and " + std::to_string(b.width) + "x" +
+                                std::to_string(b.height));
+}
+
+// Sums of one row of blocks: row-wise accumulation keeps memory access sequential.
+template <int Channels>
+void add_row(const std::uint8_t* source, int blocks, int factor, const std::array<std::uint32_t, 256>& linear,
+             std::uint32_t* sum) {
+  for (int x = 0; x < blocks; ++x, sum += 3)
+    for (int k = 0; k < factor; ++k, source += Channels) {
+      sum[0] += linear[source[0]];
+      sum[1] += linear[source[1]];
+      sum[2] += linear[source[2]];
+    }
+}
+
+}  // namespace
+
+Image downsample(const Image& source, int factor, RowOrder rows) {
+  if (factor < 1 || source.width % factor != 0 || source.height % factor != 0)
+    throw std::invalid_argument("a " + std::to_string(source.width) + "x" + std::to_string(source.height) +
+                                " picture cannot be reduced by " + std::to_string(factor));
+  const Tables& table = tables();
+  Image result(source.width / factor, source.height / factor, 3);
+  // 65535 n^2 -> 4095, rounded; 64-bit fixed point with 32 fractional bits keeps the division out of the loop
+  const auto scale =
+      static_cast<std::uint64_t>(std::llround(std::ldexp((linear_steps - 1) / (65535.0 * factor * factor), 32)));
+  const std::uint64_t half = std::uint64_t{1} << 31;
+  std::vector<std::uint32_t> sums(static_cast<std::size_t>(result.width) * 3);
+  for (int y = 0; y < result.height; ++y) {
+    std::uint8_t* out = result.at(0, y);
+    const auto source_row = [&](int k) {
+      const int row = y * factor + k;
+      return source.at(0, rows == RowOrder::top_first ? row : source.height - 1 - row);
+    };
+    if (factor == 1) {
+      const std::uint8_t* in = source_row(0);
+      for (int x = 0; x < result.width; ++x)
+        for (int c = 0; c < 3; ++c) out[3 * x + c] = in[source.channels * x + c];
+      continue;
+    }
+    sums.assign(sums.size(), 0);
+    for (int k = 0; k < factor; ++k)
+      source.channels == 4 ? add_row<4>(source_row(k), result.width, factor, table.linear, sums.data())
+                           : add_row<3>(source_row(k), result.width, factor, table.linear, sums.data());
+    for (std::size_t i = 0; i < sums.size(); ++i) out[i] = table.encoded[(sums[i] * scale + half) >> 32];
+  }
+  return result;
+}
+
+ImageDifference difference(const Image& a, const Image& b) {
+  check_same_size(a, b);
+  ImageDifference result;
+  std::int64_t squares = 0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      const std::uint8_t *p = a.at(x, y), *q = b.at(x, y);
+      int worst = 0;
+      for (int c = 0; c < 3; ++c) {
+        const int d = std::abs(p[c] - q[c]);
+        worst = std::max(worst, d);
+        squares += d * d;
+      }
+      result.maximum = std::max(result.maximum, worst);
+      result.above_two += worst > 2;
+    }
+  const double samples = 3.0 * a.width * a.height;
+  result.rmse = samples > 0 ? std::sqrt(static_cast<double>(squares) / samples) : 0;
+  return result;
+}
+
+bool same_picture(const ImageDifference& d, std::int64_t pixels) {
+  return static_cast<double>(d.above_two) <= std::max(10.0, 2e-5 * static_cast<double>(pixels)) && d.rmse <= 0.15;
+}
+
+Image difference_image(const Image& a, const Image& b, int gain) {
+  check_same_size(a, b);
+  Image result(a.width, a.height, 3);
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        result.at(x, y)[c] = static_cast<std::uint8_t>(std::min(255, gain * std::abs(a.at(x, y)[c] - b.at(x, y)[c])));
+  return result;
+}
+
+}  // namespace render

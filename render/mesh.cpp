@@ -1,0 +1,147 @@
+#include "mesh.h"
+
+#include "surface.h"
+
+#include "sim/basis.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace render {
+namespace {
+
+using sim::Matrix;
+using sim::Vec3;
+
+void put(std::vector<float>& array, std::size_t vertex, const Vec3& v) {
+  for (int c = 0; c < 3; ++c) array[3 * vertex + static_cast<std::size_t>(c)] = static_cast<float>(v[c]);
+}
+
+// A zero label cannot be normalised; it can only come from a damaged file, and draws as the pole.
+Vec3 unit(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0 ? Vec3(v / length) : Vec3(Vec3::UnitZ());
+}
+
+// phi = 0 and pi/2 are columns 0 and longitudes/4: the tangents of a pole.
+Vec3 pole_normal(const sim::FirstDerivatives& x, Eigen::Index row0, Eigen::Index row90, double side) {
+  const Vec3 a = x.t.row(row0), b = x.t.row(row90);
+  return unit(side * a.cross(b));
+}
+
+}  // namespace
+
+MeshPlan::MeshPlan(int latitudes, int longitudes) : latitudes_(latitudes), longitudes_(longitudes) {
+  if (latitudes < 4 || longitudes < 8 || longitudes % 4 != 0)
+    throw std::invalid_argument("a mesh needs 4 latitudes and 8 longitudes, a multiple of 4");
+  const auto rings = static_cast<std::uint32_t>(latitudes - 1), columns = static_cast<std::uint32_t>(longitudes);
+  const std::uint32_t north = rings * columns, south = north + 1;
+  theta_ = sim::Vector::LinSpaced(latitudes + 1, 0, std::numbers::pi);
+  phi_ = sim::Vector::LinSpaced(longitudes + 1, 0, 2 * std::numbers::pi).head(longitudes);
+  for (std::uint32_t j = 0; j < columns; ++j) {
+    const std::uint32_t here = j * rings, next = (j + 1) % columns * rings;
+    indices_.insert(indices_.end(), {north, here, next});
+    for (std::uint32_t i = 0; i + 1 < rings; ++i)
+      indices_.insert(indices_.end(), {here + i, here + i + 1, next + i + 1, here + i, next + i + 1, next + i});
+    indices_.insert(indices_.end(), {south, next + rings - 1, here + rings - 1});
+  }
+  parameters_.resize(3 * static_cast<std::size_t>(vertices()));
+  for (std::uint32_t j = 0; j < columns; ++j)
+    for (std::uint32_t i = 0; i < rings; ++i) {
+      const double t = theta_[i + 1], f = phi_[j];
+      put(parameters_, j * rings + i, {std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)});
+    }
+  put(parameters_, north, Vec3::UnitZ());
+  put(parameters_, south, -Vec3::UnitZ());
+}
+
+Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& state, const sim::Coefficients* scalar) {
+  const auto rings = static_cast<Eigen::Index>(plan->latitudes() - 1);
+  const Eigen::Index columns = plan->longitudes(), rows = rings + 2;  // sampled latitudes include both poles
+  const auto count = static_cast<std::size_t>(plan->vertices());
+  const std::size_t north = count - 2, south = count - 1;
+  Mesh mesh;
+  mesh.position.resize(3 * count);
+  mesh.normal.resize(3 * count);
+  mesh.label.resize(3 * count);
+
+  const sim::FirstDerivatives x = sim::sample_grid(state.position, plan->theta(), plan->phi());
+  const sim::FirstDerivatives s = sim::sample_grid(state.labels, plan->theta(), plan->phi());
+  double area = 0;  // trapezoidal rule; W vanishes at the poles
+  for (Eigen::Index j = 0; j < columns; ++j)
+    for (Eigen::Index i = 0; i < rings; ++i) {
+      const Eigen::Index from = j * rows + i + 1;
+      const auto to = static_cast<std::size_t>(j * rings + i);
+      const Vec3 a = x.t.row(from), b = x.f.row(from);
+      put(mesh.position, to, x.value.row(from));
+      const Vec3 n = a.cross(b);
+      area += n.norm();
+      put(mesh.normal, to, unit(n));
+      put(mesh.label, to, unit(s.value.row(from)));
+    }
+  area *= std::numbers::pi / plan->latitudes() * 2 * std::numbers::pi / plan->longitudes();
+  mesh.area_radius = std::sqrt(area / (4 * std::numbers::pi));
+  const Eigen::Index quarter = columns / 4 * rows;
+  put(mesh.position, north, x.value.row(0));
+  put(mesh.position, south, x.value.row(rows - 1));
+  put(mesh.normal, north, pole_normal(x, 0, quarter, 1));
+  put(mesh.normal, south, pole_normal(x, rows - 1, quarter + rows - 1, -1));
+  put(mesh.label, north, unit(s.value.row(0)));
+  put(mesh.label, south, unit(s.value.row(rows - 1)));
+
+  if (scalar) {
+    const sim::FirstDerivatives f = sim::sample_grid(*scalar, plan->theta(), plan->phi());
+    mesh.scalar.resize(count);
+    for (Eigen::Index j = 0; j < columns; ++j)
+      for (Eigen::Index i = 0; i < rings; ++i)
+        mesh.scalar[static_cast<std::size_t>(j * rings + i)] = static_cast<float>(f.value(j * rows + i + 1, 0));
+    mesh.scalar[north] = static_cast<float>(f.value(0, 0));
+    mesh.scalar[south] = static_cast<float>(f.value(rows - 1, 0));
+  }
+  if (state.tracers.rows() > 0) {
+    const SurfacePoints dots = surface_points(state.position, state.tracers);
+    for (Eigen::Index k = 0; k < state.tracers.rows(); ++k)
+      mesh.tracers.push_back({dots.position.row(k), dots.normal.row(k), tracer_is_bright(static_cast<int>(k))});
+  }
+  mesh.plan = std::move(plan);
+  return mesh;
+}
+
+std::vector<float> nearest_tracers(const Mesh& mesh) {
+  const std::size_t vertices = mesh.position.size() / 3;
+  std::vector<float> nearest(2 * vertices, -1);
+  std::vector<Eigen::Vector3f> places, normals;
+  for (const Mesh::Tracer& t : mesh.tracers) {
+    places.push_back(t.position.cast<float>());
+    normals.push_back(t.normal.cast<float>());
+  }
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const Eigen::Map<const Eigen::Vector3f> x(&mesh.position[3 * v]), n(&mesh.normal[3 * v]);
+    float first = std::numeric_limits<float>::infinity(), second = first;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const float d = (x - places[k]).squaredNorm();
+      if (d >= second || n.dot(normals[k]) < 0.2F) continue;  // the far side of a thin disc is near as well
+      if (d < first) {
+        second = first;
+        nearest[2 * v + 1] = nearest[2 * v];
+        first = d;
+        nearest[2 * v] = static_cast<float>(k);
+      } else {
+        second = d;
+        nearest[2 * v + 1] = static_cast<float>(k);
+      }
+    }
+  }
+  return nearest;
+}
+
+bool tracer_is_bright(int k) {
+  if (k < 6) return k % 2 == 0;  // +x -x +y -y +z -z
+  // corners counted in binary, x the highest bit, 0 for +1: bright when at most one of x, y, z is negative
+  const int corner = (k - 6) % 8;
+  return ((corner >> 2) & 1) + ((corner >> 1) & 1) + (corner & 1) <= 1;
+}
+
+}  // namespace render

@@ -1,0 +1,65 @@
+// A vesicle as triangles: positions, analytic normals and material labels on one shared grid of latitudes and
+// longitudes.
+#pragma once
+
+#include "sim/types.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace render {
+
+/// Plan: theta_i = i pi / latitudes, i = 1..latitudes-1, times `longitudes` columns, and one vertex on each pole.
+/// Columns wrap by index, so the surface is watertight and has no seam. Immutable, safe to share between threads.
+class MeshPlan {
+ public:
+  explicit MeshPlan(int latitudes = 96, int longitudes = 192);
+
+  int vertices() const { return (latitudes_ - 1) * longitudes_ + 2; }
+  /// Three vertices a triangle, counter-clockwise seen from outside.
+  std::span<const std::uint32_t> indices() const { return indices_; }
+  /// Vertices grid first, latitude running fastest, then the poles theta = 0 and theta = pi.
+  const sim::Vector& theta() const { return theta_; }  ///< with both poles: latitudes + 1
+  const sim::Vector& phi() const { return phi_; }
+  /// The parameter s of every vertex: vertices x 3 unit vectors.
+  const std::vector<float>& parameters() const { return parameters_; }
+  int latitudes() const { return latitudes_; }
+  int longitudes() const { return longitudes_; }
+
+ private:
+  int latitudes_, longitudes_;
+  sim::Vector theta_, phi_;
+  std::vector<std::uint32_t> indices_;
+  std::vector<float> parameters_;
+};
+
+/// Three floats a vertex for every array but scalar, which has one (or is empty).
+struct Mesh {
+  std::shared_ptr<const MeshPlan> plan;
+  std::vector<float> position;
+  std::vector<float> normal;  ///< outward unit vectors
+  std::vector<float> label;   ///< material label, unit vectors
+  std::vector<float> scalar;  ///< one value a vertex, for fields
+  double area_radius = 0;     ///< of the sphere of the same area
+  struct Tracer {
+    sim::Vec3 position, normal;
+    bool bright;  ///< x + y + z of its initial direction > 0
+  };
+  std::vector<Tracer> tracers;
+};
+
+/// Samples position, normal and label; tracers at their parameters. `scalar` (1 field) is optional.
+Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& state,
+               const sim::Coefficients* scalar = nullptr);
+
+/// For each vertex the indices of the two nearest tracers on its side of the membrane, -1 where there is none: 2 a
+/// vertex.
+std::vector<float> nearest_tracers(const Mesh& mesh);
+
+/// Initial direction of tracer k: the axes +x -x +y -y +z -z, then the corners of the cube; only x + y + z > 0 is used
+/// here.
+bool tracer_is_bright(int k);
+
+}  // namespace render

@@ -1,0 +1,13 @@
+// What is written on a finished frame: time, parameters, scale bar.
+#pragma once
+
+#include "image.h"
+#include "scene.h"
+#include "text.h"
+
+namespace render {
+
+/// Draws the captions that the view asks for onto an RGB picture.
+void draw_captions(Image& image, const Font& font, const Frame& frame);
+
+}  // namespace render

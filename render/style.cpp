@@ -1,0 +1,53 @@
+#include "style.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+namespace render {
+
+const std::vector<StyleRow>& styles() {
+  static const std::vector<StyleRow> rows{
+      {"opaque", "solid membranes with grid lines and tracer dots", "", true, true, true},
+      {"plain", "solid membranes, tracer dots, no lines", "", false, true, true},
+      {"checker", "patches two spacings of the grid wide", "CHECKER", false, false, true},
+      {"meridian", "grid lines with one meridian and the equator in red", "MARKS", true, false, true},
+      {"outline", "white membranes with lines and contours only, for print", "FLAT", true, true, false},
+  };
+  return rows;
+}
+
+const StyleRow& find_style(std::string_view name) {
+  if (const StyleRow* row = sim::find_row(styles(), name)) return *row;
+  throw std::invalid_argument("unknown style '" + std::string(name) + "'" +
+                              sim::suggestion(name, sim::row_names(styles())));
+}
+
+std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers) {
+  std::string text;
+  std::istringstream words{std::string(style.defines)};
+  for (std::string word; words >> word;) text += "#define " + word + "\n";
+  const bool checker = style.defines.find("CHECKER") != std::string_view::npos;
+  int parallels = view.grid_parallels, meridians = view.grid_meridians;
+  if (checker) {  // patches two spacings wide, an even number round the axis so that the colours alternate
+    parallels = std::max(3, parallels / 2);
+    meridians = std::max(4, meridians / 4 * 2);
+  }
+  const bool lines = style.grid && view.line_width > 0;
+  if (lines) text += "#define GRID\n";
+  if ((lines || checker) && parallels > 0) text += fmt::format("#define PARALLELS {}\n", parallels);
+  if ((lines || checker) && meridians > 0) {
+    const int middle = meridians % 2 == 0 ? 2 : 1;
+    const int cap = meridians % 4 == 0 ? meridians / 4 : middle;
+    const double spacing = parallels > 0 ? std::numbers::pi / (parallels + 1) : std::numbers::pi / 12;
+    text += fmt::format("#define MERIDIANS {}\n#define CAP_STEP {}\n#define MIDDLE_STEP {}\n", meridians,
+                        std::max(cap, middle), middle);
+    text += fmt::format("#define CAP_THETA {:.9f}\n#define MIDDLE_THETA {:.9f}\n", spacing, 2 * spacing);
+  }
+  if (style.tracers && view.tracers && tracers > 0) text += fmt::format("#define TRACERS {}\n", tracers);
+  return text;
+}
+
+}  // namespace render

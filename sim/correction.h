@@ -1,0 +1,22 @@
+// Area and volume correction: x += (a + b H) n with a, b from a 2x2 Newton iteration, so that a step ends at A0 and V0.
+#pragma once
+
+#include "geometry.h"
+#include "plans.h"
+
+namespace sim {
+
+/// Order of the grid on which areas and volumes are measured everywhere, so that all parts mean the same number.
+constexpr int measure_order(int p) { return 2 * p + 8; }
+
+struct Correction {
+  Coefficients shift;    ///< to be added to the position, degree p
+  double largest = 0;    ///< longest shift of a grid point
+  double area = 0, volume = 0;  ///< after it
+  bool converged = false;
+};
+
+/// On a sphere n and H n coincide; the minimum-norm solution is taken.
+Correction area_volume_correction(Plans&, const Coefficients& position, double area, double volume);
+
+}  // namespace sim

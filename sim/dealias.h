@@ -1,0 +1,19 @@
+// Aliasing and its remedy: the grid on which a surface of degree p is differentiated (Algorithm 1, Eqs. (28), (29)).
+#pragma once
+
+#include "geometry.h"
+#include "plans.h"
+
+namespace sim {
+
+/// Mean curvature computed on the q-grid and restricted to degree p.
+Coefficients mean_curvature(Plans&, const Coefficients& position, int grid_order);
+
+/// Algorithm 1: smallest rate v = 2, 3, ... for which the mean curvature of degree p changes by less than `tolerance`
+/// (relative, Eq. (28)) from rate v - 1 to v; `most` when none does.
+int upsampling_rate(Plans&, const Coefficients& position, double tolerance, int most = 8);
+
+/// Share of the mean curvature's spectrum in its last quarter of degrees, n > 3p/4: how far a shape is from resolved.
+double curvature_tail(Plans&, const Coefficients& position, int grid_order);
+
+}  // namespace sim

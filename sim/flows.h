@@ -1,0 +1,21 @@
+// Background flows u_inf (1b) and body forces. A flow is a row of a catalogue; a scene adds several up, each with a time
+// factor. Every row solves the Stokes equations with a constant pressure gradient at most.
+#pragma once
+
+#include "catalogue.h"
+#include "parameters.h"
+
+#include <span>
+
+namespace sim {
+
+using FlowFunction = Vec3 (*)(const FlowParameters&, const Vec3& position);
+const std::vector<CatalogueRow<FlowFunction>>& flow_catalogue();
+
+/// The factor of a flow at time t: 1, cos(2 pi frequency t + phase), or 1 in [from, until) and 0 outside.
+double time_factor(const FlowParameters&, double time);
+
+/// Sum of all flows at points (count x 3): count x 3.
+Matrix background_velocity(std::span<const FlowParameters>, double time, const Matrix& points);
+
+}  // namespace sim

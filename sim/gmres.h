@@ -1,0 +1,23 @@
+// GMRES without restart, right-preconditioned, so that the residual it reports is the true one.
+#pragma once
+
+#include "types.h"
+
+#include <functional>
+
+namespace sim {
+
+using LinearMap = std::function<Vector(const Vector&)>;
+
+struct GmresResult {
+  Vector solution;
+  int iterations = 0;
+  double residual = 0;     ///< |b - A x| / |b|, from the recurrence
+  bool converged = false;
+};
+
+/// Solves A x = b from `guess` to |b - A x| <= tolerance |b|; `inverse` approximates A^-1.
+GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b, const Vector& guess, double tolerance,
+                  int most_iterations);
+
+}  // namespace sim

@@ -1,0 +1,543 @@
+#include "layer_potentials.h"
+
+#include "small_product.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+
+namespace sim {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr int components = 12;  ///< six of S, six of D
+
+int round_up(int n, int step) { return (n + step - 1) / step * step; }
+
+/// Uninitialised aligned scratch of SIMD vectors.
+struct LaneBuffer {
+  explicit LaneBuffer(std::size_t n) : data(new (std::align_val_t(64)) Lane[n]) {}
+  struct Free {
+    void operator()(Lane* p) const { ::operator delete[](p, std::align_val_t(64)); }
+  };
+  std::unique_ptr<Lane[], Free> data;
+  Lane* get() const { return data.get(); }
+};
+
+/// Longitudes of a grid of nlon points fall into orbits {f, -f, pi-f, pi+f} of a quarter; cosines and sines of even and odd
+/// m are even or odd under the two mirrors, which leaves four products of a quarter of the size.
+struct Quarter {
+  int index[4];  ///< of f, -f, pi - f, pi + f; -1 where the orbit has no such member of its own
+};
+
+/// Fourier and Legendre tables of one grid for degree p, folded by all mirror symmetries of the grid.
+struct FoldedGrid {
+  int p, nlat, nlon, half;  ///< half: latitudes of the northern half, the equator included
+  std::vector<Quarter> orbits;
+  struct Block {               ///< one of cos/sin x even/odd m
+    std::vector<int> m;
+    std::vector<double> table;       ///< m x orbits: basis function at the orbit's first longitude
+    std::vector<double> transposed;  ///< orbits x m
+  };
+  std::array<Block, 4> blocks;         ///< cos even, cos odd, sin even, sin odd
+  std::vector<std::vector<double>> legendre[2];  ///< [parity of n-m][m]: (n) x half, values, without weights
+  std::vector<std::vector<double>> synthesis[2]; ///< [parity][m]: (2 half) x (n): values, then derivatives
+  Vector theta, weight;                ///< of all latitudes; Gauss-Legendre
+
+  FoldedGrid(int degree, int grid_order);
+  int mirror(int i) const { return nlat - 1 - i; }
+};
+
+FoldedGrid::FoldedGrid(int degree, int grid_order)
+    : p(degree), nlat(grid_order + 1), nlon(2 * grid_order + 2), half((nlat + 1) / 2) {
+  const GaussLegendre rule = gauss_legendre(nlat);
+  theta = rule.theta;
+  weight = rule.weight;
+  for (int l = 0; 4 * l <= nlon; ++l) {
+    Quarter quarter{{l, (nlon - l) % nlon, nlon / 2 - l, nlon / 2 + l}};
+    if (l == 0) quarter.index[1] = quarter.index[3] = -1;
+    if (4 * l == nlon) quarter.index[2] = quarter.index[3] = -1;
+    orbits.push_back(quarter);
+  }
+  for (int m = 0; m <= p; ++m) blocks[m % 2].m.push_back(m);
+  for (int m = 1; m <= p; ++m) blocks[2 + m % 2].m.push_back(m);
+  for (int b = 0; b < 4; ++b) {
+    Block& block = blocks[b];
+    const std::size_t rows = block.m.size(), columns = orbits.size();
+    block.table.resize(rows * columns);
+    block.transposed.resize(rows * columns);
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t l = 0; l < columns; ++l) {
+        const int m = block.m[r];
+        const double angle = 2 * pi * double(m) * double(l) / nlon, k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
+        block.table[r * columns + l] = block.transposed[l * rows + r] = k * (b < 2 ? std::cos(angle) : std::sin(angle));
+      }
+  }
+  const LegendreTable table = legendre_table(p, theta);
+  for (int parity = 0; parity < 2; ++parity)
+    for (int m = 0; m <= p; ++m) {
+      const int count = (p - m - parity + 2) / 2;
+      std::vector<double> analysis(std::size_t(count) * half), synth(std::size_t(2 * half) * count);
+      for (int k = 0; k < count; ++k)
+        for (int i = 0; i < half; ++i) {
+          const int row = legendre_index(p, m + parity + 2 * k, m);
+          analysis[std::size_t(k) * half + i] = table.value(row, i);
+          synth[std::size_t(i) * count + k] = table.value(row, i);
+          synth[std::size_t(half + i) * count + k] = table.d1(row, i);
+        }
+      legendre[parity].push_back(std::move(analysis));
+      synthesis[parity].push_back(std::move(synth));
+    }
+}
+
+/// Row of (parity, block, m) among the intermediate spectra: latitude parity is the outermost index.
+struct SpectrumRows {
+  std::array<int, 4> first{};
+  int count = 0;
+  explicit SpectrumRows(const FoldedGrid& g) {
+    for (int b = 0; b < 4; ++b) {
+      first[b] = count;
+      count += int(g.blocks[b].m.size());
+    }
+  }
+};
+
+}  // namespace
+
+struct LayerPotentials::Plan {
+  int p, q, s;
+  FoldedGrid target, source;
+  SpectrumRows target_rows, source_rows;
+  std::vector<double> singular_weight;  ///< of each source latitude, for the integrand kernel * |x_t x x_f|
+  struct Rotation {                     ///< the two mirror classes of one degree n, row-major, forward and transposed
+    std::vector<double> cosine, sine, cosine_t, sine_t;
+  };
+  std::vector<std::vector<Rotation>> rotations;  ///< [target latitude][n]
+  std::vector<int> identity3, identity12;        ///< 0, 3, 6, ... and 0, 12, 24, ...
+
+  Plan(int order, int source_order);
+  void rows_of_tile(int latitude, int tile, const Coefficients& x, bool with_double, double* rows) const;
+  LayerMatrices project(const std::vector<double>& rows, bool with_double) const;
+  int column_stride() const { return round_up(coefficient_count(p), lanes); }
+  void analyse(const FoldedGrid& g, const SpectrumRows& r, const Lane* folded, Lane* spectrum, int latitude,
+               int width) const;
+  void legendre(const FoldedGrid& g, const SpectrumRows& r, const Lane* spectrum, Lane* out, int width) const;
+};
+
+LayerPotentials::Plan::Plan(int order, int source_order)
+    : p(order), q(order + 1), s(source_order > 0 ? source_order : order + 1), target(order, order + 1),
+      source(order, source_order > 0 ? source_order : order + 1), target_rows(target), source_rows(source) {
+  if (s < p) throw std::invalid_argument("LayerPotentials: the source order must be at least p");
+  for (int k = 0; k <= s; ++k) {
+    const double t = source.theta[k], z = std::cos(t);
+    double p0 = 1, p1 = z, sum = 1 + z;
+    for (int n = 2; n <= s; ++n) {
+      const double p2 = ((2 * n - 1) * z * p1 - (n - 1) * p0) / n;
+      sum += p2;
+      p0 = p1;
+      p1 = p2;
+    }
+    singular_weight.push_back(source.weight[k] * pi / (s + 1) * sum * 2 * std::sin(t / 2) / std::sin(t));
+  }
+  for (int i = 0; i < std::max(4 * coefficient_count(p), 8 * (s + 2)); ++i) {
+    identity3.push_back(3 * i);
+    identity12.push_back(components * i);
+  }
+  // W_i: the basis at points turned by Ry(theta_i), projected on a p-grid, where the product is integrated exactly.
+  const Basis basis(p, p);
+  Matrix direction(basis.points(), 3), turned(basis.points(), 3);
+  for (int j = 0; j < basis.longitudes(); ++j)
+    for (int k = 0; k < basis.latitudes(); ++k) {
+      const double st = std::sin(basis.theta()[k]);
+      direction.row(k + basis.latitudes() * j) << st * std::cos(basis.phi()[j]), st * std::sin(basis.phi()[j]),
+          std::cos(basis.theta()[k]);
+    }
+  const Matrix projection = basis_functions(p, direction).transpose() * basis.weights().asDiagonal();
+  for (int i = 0; i <= q; ++i) {
+    const double c = std::cos(target.theta[i]), sn = std::sin(target.theta[i]);
+    turned << c * direction.col(0) + sn * direction.col(2), direction.col(1), c * direction.col(2) - sn * direction.col(0);
+    const Matrix values = basis_functions(p, turned);
+    std::vector<Rotation> all;
+    for (int n = 0; n <= p; ++n) {
+      const Matrix w = projection.middleRows(n * n, 2 * n + 1) * values.middleCols(n * n, 2 * n + 1);
+      Rotation r{std::vector<double>((n + 1) * (n + 1)), std::vector<double>(n * n), {}, {}};
+      r.cosine_t = r.cosine;
+      r.sine_t = r.sine;
+      for (int a = 0; a <= n; ++a)
+        for (int b = 0; b <= n; ++b) {
+          r.cosine[a * (n + 1) + b] = r.cosine_t[b * (n + 1) + a] = w(n + a, n + b);
+          if (a > 0 && b > 0)
+            r.sine[(a - 1) * n + b - 1] = r.sine_t[(b - 1) * n + a - 1] =
+                w(n - a, n - b);
+        }
+      all.push_back(std::move(r));
+    }
+    rotations.push_back(std::move(all));
+  }
+}
+
+/// Fourier half of an analysis: folded samples [latitude parity][block][orbit][12] -> spectrum rows at one latitude.
+/// spectrum: [latitude parity][block, m][half][12].
+void LayerPotentials::Plan::analyse(const FoldedGrid& g, const SpectrumRows& r, const Lane* folded, Lane* spectrum,
+                                    int latitude, int width) const {
+  const int orbits = int(g.orbits.size());
+  std::array<int, 130> rows{};
+  for (int parity = 0; parity < 2; ++parity)
+    for (int b = 0; b < 4; ++b) {
+      const int count = int(g.blocks[b].m.size());
+      if (count == 0) continue;
+      for (int k = 0; k < count; ++k)
+        rows[k] = (((parity * r.count) + r.first[b] + k) * g.half + latitude) * components;
+      const SmallProduct product{count, orbits, g.blocks[b].table.data(), orbits, identity12.data(), rows.data()};
+      multiply(product, width, folded + std::ptrdiff_t(parity * 4 + b) * orbits * components, spectrum);
+    }
+}
+
+/// Legendre half of an analysis: spectrum as above -> coefficients [nm][12].
+void LayerPotentials::Plan::legendre(const FoldedGrid& g, const SpectrumRows& r, const Lane* spectrum, Lane* out,
+                                     int width) const {
+  std::array<int, 130> rows{};
+  for (int b = 0; b < 4; ++b)
+    for (std::size_t k = 0; k < g.blocks[b].m.size(); ++k)
+      for (int parity = 0; parity < 2; ++parity) {
+        const int m = g.blocks[b].m[k], sign = b < 2 ? 1 : -1, count = (p - m - parity + 2) / 2;
+        if (count <= 0) continue;
+        for (int c = 0; c < count; ++c) rows[c] = coefficient_index(m + parity + 2 * c, sign * m) * components;
+        const SmallProduct product{count, g.half, g.legendre[parity][m].data(), g.half, identity12.data(), rows.data()};
+        multiply(product, width,
+                 spectrum + std::ptrdiff_t((parity * r.count) + r.first[b] + int(k)) * g.half * components, out);
+      }
+}
+
+namespace {
+
+/// Adds 12 components of one sample to the eight folded sums it belongs to. Latitude parity: even sum and odd difference;
+/// orbit member 0: f, 1: -f, 2: pi - f, 3: pi + f; blocks cos even, cos odd, sin even, sin odd.
+constexpr double fold_sign[4][4] = {{1, 1, 1, 1}, {1, 1, -1, -1}, {1, -1, -1, 1}, {1, -1, 1, -1}};
+
+/// samples: [2 latitudes][4 members][12], zero where there is none; folded: [parity][block] strided by `stride`.
+void fold(const Lane* samples, Lane* folded, std::ptrdiff_t stride, int width) {
+  for (int c = 0; c < width; ++c) {
+    Lane sum[2][4];
+    for (int lat = 0; lat < 2; ++lat) {
+      const Lane* v = samples + (lat * 4) * components + c;
+      const Lane a = v[0] + v[components], d = v[0] - v[components];
+      const Lane e = v[2 * components] + v[3 * components], g = v[2 * components] - v[3 * components];
+      sum[lat][0] = a + e;  // cos even
+      sum[lat][1] = a - e;  // cos odd
+      sum[lat][2] = d - g;  // sin even: f, -(-f), -(pi-f), +(pi+f)
+      sum[lat][3] = d + g;  // sin odd:  f, -(-f), +(pi-f), -(pi+f)
+    }
+    for (int b = 0; b < 4; ++b) {
+      folded[b * stride + c] = sum[0][b] + sum[1][b];
+      folded[(4 + b) * stride + c] = sum[0][b] - sum[1][b];
+    }
+  }
+}
+
+struct SourcePoint {
+  Lane x[3], n[3], area;  ///< position, area-weighted normal x_t x x_f, its length
+};
+
+Lane lane_sqrt(Lane v) {
+  Lane r{};
+  for (int i = 0; i < lanes; ++i) r[i] = std::sqrt(v[i]);
+  return r;
+}
+
+/// Stokes kernels at the four targets of a tile: S |n| w/(8 pi) and +3/(4 pi) (r.n) r r^T/|r|^5 w, n = x_t x x_f.
+void kernels(const Lane* target, const SourcePoint& y, double weight, bool with_double, Lane* out) {
+  const Lane r0 = target[0] - y.x[0], r1 = target[1] - y.x[1], r2 = target[2] - y.x[2];
+  const Lane rr = r0 * r0 + r1 * r1 + r2 * r2;
+  const Lane inverse = 1.0 / lane_sqrt(rr), inverse2 = inverse * inverse;
+  const Lane s = y.area * inverse * (weight / (8 * pi)), ss = s * inverse2;
+  const Lane q00 = r0 * r0, q01 = r0 * r1, q02 = r0 * r2, q11 = r1 * r1, q12 = r1 * r2, q22 = r2 * r2;
+  out[0] = s + ss * q00;
+  out[1] = ss * q01;
+  out[2] = ss * q02;
+  out[3] = s + ss * q11;
+  out[4] = ss * q12;
+  out[5] = s + ss * q22;
+  if (!with_double) return;
+  const Lane rn = r0 * y.n[0] + r1 * y.n[1] + r2 * y.n[2];
+  const Lane d = rn * inverse2 * inverse2 * inverse * (3 * weight / (4 * pi));
+  out[6] = d * q00;
+  out[7] = d * q01;
+  out[8] = d * q02;
+  out[9] = d * q11;
+  out[10] = d * q12;
+  out[11] = d * q22;
+}
+
+}  // namespace
+
+/// Rows of the collocation operator for the four targets (theta_latitude, phi of `tile`), in the original frame:
+/// rows[target longitude][component][nm], strides column_stride() and 12 column_stride().
+void LayerPotentials::Plan::rows_of_tile(int latitude, int tile, const Coefficients& x, bool with_double,
+                                         double* rows) const {
+  const int nc = coefficient_count(p), half = source.half, used = with_double ? components : components / 2, orbits = int(source.orbits.size());
+  const int longitudes = target.nlon, spectra = source_rows.count;
+  LaneBuffer turned(3 * nc), pole(3 * nc), x_lat(std::size_t(2) * spectra * 2 * half * 3);
+
+  // z-rotation by phi_j, one target a lane.
+  std::vector<Lane> cosine(p + 1), sine(p + 1);
+  for (int m = 0; m <= p; ++m)
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double angle = 2 * pi * ((std::int64_t(m) * (tile * lanes + lane)) % longitudes) / longitudes;
+      cosine[m][lane] = std::cos(angle);
+      sine[m][lane] = std::sin(angle);
+    }
+  for (int n = 0; n <= p; ++n)
+    for (int m = 0; m <= n; ++m)
+      for (int d = 0; d < 3; ++d) {
+        const double c = x.values(coefficient_index(n, m), d), sn = x.values(coefficient_index(n, -m), d);
+        if (m == 0) {
+          turned.get()[3 * coefficient_index(n, 0) + d] = c + 0 * cosine[0];
+        } else {
+          turned.get()[3 * coefficient_index(n, m) + d] = c * cosine[m] + sn * sine[m];
+          turned.get()[3 * coefficient_index(n, -m) + d] = sn * cosine[m] - c * sine[m];
+        }
+      }
+  // y-rotation: the target becomes the pole. Sines stand in reverse order of m, hence the row lists.
+  std::array<int, 130> down{};
+  for (int m = 0; m < 130; ++m) down[m] = -3 * m;
+  const auto& w = rotations[latitude];
+  for (int n = 0; n <= p; ++n) {
+    const int centre = 3 * coefficient_index(n, 0);
+    multiply({n + 1, n + 1, w[n].cosine.data(), n + 1, identity3.data(), identity3.data()}, 3, turned.get() + centre,
+             pole.get() + centre);
+    if (n > 0)
+      multiply({n, n, w[n].sine.data(), n, down.data(), down.data()}, 3, turned.get() + centre - 3,
+               pole.get() + centre - 3);
+  }
+  Lane target_x[3] = {};
+  for (int n = 0; n <= p; ++n)
+    for (int d = 0; d < 3; ++d)
+      target_x[d] += std::sqrt((2 * n + 1) / (4 * pi)) * pole.get()[3 * coefficient_index(n, 0) + d];
+
+  // Legendre synthesis of x and x_theta: [parity][block, m][value or slope, half][3].
+  {
+    std::array<int, 130> in{};
+    for (int b = 0; b < 4; ++b)
+      for (std::size_t k = 0; k < source.blocks[b].m.size(); ++k)
+        for (int parity = 0; parity < 2; ++parity) {
+          const int m = source.blocks[b].m[k], sign = b < 2 ? 1 : -1, count = (p - m - parity + 2) / 2;
+          Lane* out = x_lat.get() + std::ptrdiff_t(parity * spectra + source_rows.first[b] + int(k)) * 2 * half * 3;
+          if (count <= 0) {
+            std::fill(out, out + 2 * half * 3, Lane{});
+            continue;
+          }
+          for (int c = 0; c < count; ++c) in[c] = 3 * coefficient_index(m + parity + 2 * c, sign * m);
+          multiply({2 * half, count, source.synthesis[parity][m].data(), count, in.data(), identity3.data()}, 3,
+                   pole.get(), out);
+        }
+  }
+
+  // Latitude pair by latitude pair: Fourier synthesis, kernels, folding, Fourier analysis.
+  LaneBuffer spectrum(std::size_t(2) * spectra * half * components);
+  LaneBuffer folded(std::size_t(8) * orbits * components);
+  const int widest = p / 2 + 1;
+  LaneBuffer modes(std::size_t(widest) * 9), quarter(std::size_t(4) * orbits * 9);
+  std::vector<SourcePoint> points(std::size_t(2) * orbits * 4);
+  std::array<int, 130> nine{};
+  for (int k = 0; k < 130; ++k) nine[k] = 9 * k;
+  std::vector<Lane> samples(8 * components);
+  for (int i = 0; i < half; ++i) {
+    const int members = source.mirror(i) == i ? 1 : 2;
+    for (int lat = 0; lat < members; ++lat) {
+      for (int b = 0; b < 4; ++b) {
+        const int count = int(source.blocks[b].m.size()), partner = b < 2 ? b + 2 : b - 2;
+        const double lat_sign = lat == 0 ? 1 : -1;
+        // Value and slope of (block, m) at this latitude from the two parities of n - m: P is even for parity 0, P' odd.
+        const auto at = [&](int block, int k, int slope, int d) {
+          const Lane* even = x_lat.get() + std::ptrdiff_t(source_rows.first[block] + k) * 2 * half * 3;
+          const Lane* odd = x_lat.get() + std::ptrdiff_t(spectra + source_rows.first[block] + k) * 2 * half * 3;
+          const int at_row = (slope * half + i) * 3 + d;
+          return slope == 0 ? even[at_row] + lat_sign * odd[at_row] : lat_sign * even[at_row] + odd[at_row];
+        };
+        // d/dphi turns sin(m phi) coefficients s into cosines m s, and cosines c into sines -m c; m keeps its parity.
+        for (int k = 0; k < count; ++k) {
+          const int m = source.blocks[b].m[k];
+          // Among the even m the cosines start at 0, the sines at 2.
+          const int k_partner = m == 0 ? -1 : b == 0 ? k - 1 : b == 2 ? k + 1 : k;
+          for (int d = 0; d < 3; ++d) {
+            modes.get()[9 * k + d] = at(b, k, 0, d);
+            modes.get()[9 * k + 3 + d] = at(b, k, 1, d);
+            modes.get()[9 * k + 6 + d] =
+                m == 0 ? Lane{} : (b < 2 ? double(m) : -double(m)) * at(partner, k_partner, 0, d);
+          }
+        }
+        Lane* out = quarter.get() + std::ptrdiff_t(b) * orbits * 9;
+        if (count == 0) {
+          std::fill(out, out + orbits * 9, Lane{});
+          continue;
+        }
+        multiply({orbits, count, source.blocks[b].transposed.data(), count, nine.data(), nine.data()}, 9, modes.get(), out);
+      }
+      for (int l = 0; l < orbits; ++l)
+        for (int member = 0; member < 4; ++member) {
+          if (source.orbits[l].index[member] < 0) continue;
+          Lane v[9];
+          for (int c = 0; c < 9; ++c) {
+            v[c] = Lane{};
+            for (int b = 0; b < 4; ++b) v[c] += fold_sign[b][member] * quarter.get()[(b * orbits + l) * 9 + c];
+          }
+          SourcePoint& y = points[(std::size_t(lat) * orbits + l) * 4 + member];
+          for (int d = 0; d < 3; ++d) {
+            y.x[d] = v[d];
+            const int e = (d + 1) % 3, f = (d + 2) % 3;
+            y.n[d] = v[3 + e] * v[6 + f] - v[3 + f] * v[6 + e];
+          }
+          y.area = lane_sqrt(y.n[0] * y.n[0] + y.n[1] * y.n[1] + y.n[2] * y.n[2]);
+        }
+    }
+    for (int l = 0; l < orbits; ++l) {
+      for (int lat = 0; lat < 2; ++lat)
+        for (int member = 0; member < 4; ++member) {
+          Lane* out = samples.data() + (lat * 4 + member) * components;
+          if (lat >= members || source.orbits[l].index[member] < 0)
+            std::fill(out, out + components, Lane{});
+          else
+            kernels(target_x, points[(std::size_t(lat) * orbits + l) * 4 + member],
+                    singular_weight[lat == 0 ? i : source.mirror(i)], with_double, out);
+        }
+      fold(samples.data(), folded.get() + l * components, std::ptrdiff_t(orbits) * components, used);
+    }
+    analyse(source, source_rows, folded.get(), spectrum.get(), i, used);
+  }
+  LaneBuffer in_pole_frame(std::size_t(components) * nc), back(std::size_t(components) * nc);
+  legendre(source, source_rows, spectrum.get(), in_pole_frame.get(), used);
+
+  // Back to the original frame: W^T, then the z-rotation.
+  for (int m = 0; m < 130; ++m) down[m] = -components * m;
+  for (int n = 0; n <= p; ++n) {
+    const int centre = components * coefficient_index(n, 0);
+    multiply({n + 1, n + 1, w[n].cosine_t.data(), n + 1, identity12.data(), identity12.data()}, used,
+             in_pole_frame.get() + centre, back.get() + centre);
+    if (n > 0)
+      multiply({n, n, w[n].sine_t.data(), n, down.data(), down.data()}, used,
+               in_pole_frame.get() + centre - components, back.get() + centre - components);
+  }
+  const int stride = column_stride();
+  for (int n = 0; n <= p; ++n)
+    for (int m = 0; m <= n; ++m) {
+      Lane* c = back.get() + components * coefficient_index(n, m);
+      Lane* sn = back.get() + components * coefficient_index(n, -m);
+      for (int k = 0; k < used; ++k) {
+        Lane row_c = c[k], row_s = sn[k];
+        if (m > 0) {
+          row_c = c[k] * cosine[m] - sn[k] * sine[m];
+          row_s = sn[k] * cosine[m] + c[k] * sine[m];
+        }
+        for (int lane = 0; lane < lanes && tile * lanes + lane < longitudes; ++lane) {
+          double* row = rows + (std::ptrdiff_t(lane) * components + k) * stride;
+          row[coefficient_index(n, m)] = row_c[lane];
+          if (m > 0) row[coefficient_index(n, -m)] = row_s[lane];
+        }
+      }
+    }
+}
+
+/// Projection of all rows on the target harmonics, column block by column block: 48 columns are 12 vectors.
+LayerMatrices LayerPotentials::Plan::project(const std::vector<double>& rows, bool with_double) const {
+  const int nc = coefficient_count(p), stride = column_stride(), half = target.half, orbits = int(target.orbits.size());
+  const int used = with_double ? components : components / 2, vectors = used * stride / lanes;
+  const int blocks = (vectors + components - 1) / components;
+  const std::ptrdiff_t row_length = std::ptrdiff_t(components) * stride;
+  LayerMatrices result;
+  for (LayerMatrix* m : {&result.single, &result.dual}) {
+    if (m == &result.dual && !with_double) continue;
+    m->order = p;
+    m->stride = stride;
+    m->values.resize(std::size_t(nc) * 6 * stride);
+  }
+#pragma omp parallel
+  {
+    LaneBuffer spectrum(std::size_t(2) * target_rows.count * half * components);
+    LaneBuffer folded(std::size_t(8) * orbits * components), out(std::size_t(nc) * components);
+    std::vector<Lane> samples(8 * components);
+#pragma omp for schedule(static)
+    for (int block = 0; block < blocks; ++block) {
+      const int first = block * components, width = std::min(components, vectors - first);
+      for (int i = 0; i < half; ++i) {
+        const int members = target.mirror(i) == i ? 1 : 2;
+        for (int l = 0; l < orbits; ++l) {
+          for (int lat = 0; lat < 2; ++lat)
+            for (int member = 0; member < 4; ++member) {
+              Lane* sample = samples.data() + (lat * 4 + member) * components;
+              const int j = target.orbits[l].index[member];
+              if (lat >= members || j < 0) {
+                std::fill(sample, sample + components, Lane{});
+                continue;
+              }
+              const int lat_index = lat == 0 ? i : target.mirror(i);
+              const double weight = target.weight[lat_index] * pi / (q + 1);
+              const double* in = rows.data() + (std::ptrdiff_t(lat_index) * target.nlon + j) * row_length + first * lanes;
+              for (int c = 0; c < width; ++c) {
+                Lane v;
+                __builtin_memcpy(&v, in + c * lanes, sizeof v);
+                sample[c] = weight * v;
+              }
+              std::fill(sample + width, sample + components, Lane{});
+            }
+          fold(samples.data(), folded.get() + l * components, std::ptrdiff_t(orbits) * components, components);
+        }
+        analyse(target, target_rows, folded.get(), spectrum.get(), i, components);
+      }
+      legendre(target, target_rows, spectrum.get(), out.get(), components);
+      for (int row = 0; row < nc; ++row)
+        for (int c = 0; c < width; ++c) {
+          const int column = (first + c) * lanes;
+          LayerMatrix& m = column < 6 * stride ? result.single : result.dual;
+          double* to = m.values.data() + std::ptrdiff_t(row) * 6 * stride + column - (&m == &result.dual ? 6 * stride : 0);
+          __builtin_memcpy(to, &out.get()[row * components + c], sizeof(Lane));
+        }
+    }
+  }
+  return result;
+}
+
+LayerPotentials::LayerPotentials(int order, int source_order) : plan_(std::make_unique<Plan>(order, source_order)) {}
+LayerPotentials::~LayerPotentials() = default;
+LayerPotentials::LayerPotentials(LayerPotentials&&) noexcept = default;
+int LayerPotentials::order() const { return plan_->p; }
+int LayerPotentials::source_order() const { return plan_->s; }
+
+LayerMatrices LayerPotentials::assemble(const Coefficients& position, bool with_double) const {
+  const Plan& plan = *plan_;
+  if (position.order > plan.p || position.values.cols() != 3)
+    throw std::invalid_argument("LayerPotentials: the position must have 3 fields of at most the plan's degree");
+  const Coefficients x = resized(position, plan.p);
+  const int longitudes = plan.target.nlon, tiles = (longitudes + lanes - 1) / lanes, tasks = plan.target.nlat * tiles;
+  const std::ptrdiff_t row_length = std::ptrdiff_t(components) * plan.column_stride();
+  std::vector<double> rows(std::size_t(plan.target.nlat) * longitudes * row_length);
+#pragma omp parallel for schedule(static)
+  for (int task = 0; task < tasks; ++task) {
+    const int latitude = task / tiles, tile = task % tiles;
+    plan.rows_of_tile(latitude, tile, x, with_double,
+                      rows.data() + (std::ptrdiff_t(latitude) * longitudes + tile * lanes) * row_length);
+  }
+  return plan.project(rows, with_double);
+}
+
+Coefficients LayerMatrix::apply(const Coefficients& density) const {
+  const int nc = coefficient_count(order);
+  Coefficients in = density.order == order ? density : resized(density, order), out{order, Matrix(nc, 3)};
+  const Vector fx = in.values.col(0), fy = in.values.col(1), fz = in.values.col(2);
+  using Row = Eigen::Map<const Eigen::RowVectorXd>;
+  for (int row = 0; row < nc; ++row) {
+    const double* block = values.data() + std::ptrdiff_t(row) * 6 * stride;
+    const Row xx(block, nc), xy(block + stride, nc), xz(block + 2 * stride, nc), yy(block + 3 * stride, nc),
+        yz(block + 4 * stride, nc), zz(block + 5 * stride, nc);
+    out.values(row, 0) = xx.dot(fx) + xy.dot(fy) + xz.dot(fz);
+    out.values(row, 1) = xy.dot(fx) + yy.dot(fy) + yz.dot(fz);
+    out.values(row, 2) = xz.dot(fx) + yz.dot(fy) + zz.dot(fz);
+  }
+  return out;
+}
+
+}  // namespace sim

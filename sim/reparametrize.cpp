@@ -1,0 +1,114 @@
+#include "reparametrize.h"
+
+#include "norms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace sim {
+
+namespace {
+
+/// Directions of all grid points, as rows of unit vectors.
+Matrix grid_directions(const Basis& basis) {
+  Matrix s(basis.points(), 3);
+  for (int j = 0; j < basis.longitudes(); ++j)
+    for (int i = 0; i < basis.latitudes(); ++i) {
+      const double t = basis.theta()[i], f = basis.phi()[j];
+      s.row(i + basis.latitudes() * j) << std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t);
+    }
+  return s;
+}
+
+/// Orthonormal tangents of the sphere at s, in the directions of growing theta and phi.
+struct SphereFrame {
+  Vec3 e_theta, e_phi;
+  double sin_theta;
+};
+SphereFrame sphere_frame(const Vec3& s) {
+  const double rho = std::max(std::hypot(s[0], s[1]), 1e-150);
+  const double c = s[0] / rho, d = s[1] / rho;
+  return {Vec3(s[2] * c, s[2] * d, -rho), Vec3(-d, c, 0), rho};
+}
+
+/// Tangential step on the sphere that moves the surface point by the tangential part of `shift` (least squares).
+Vec3 parameter_shift(const SphereFrame& frame, const Vec3& x_t, const Vec3& x_f, const Vec3& shift) {
+  const Vec3 a = x_t, b = x_f / frame.sin_theta;
+  const double aa = a.dot(a), ab = a.dot(b), bb = b.dot(b), det = aa * bb - ab * ab;
+  const double u = a.dot(shift), v = b.dot(shift);
+  return ((bb * u - ab * v) * frame.e_theta + (aa * v - ab * u) * frame.e_phi) / det;
+}
+
+}  // namespace
+
+/// Weight of the degrees p/2..p in E, where those beyond p have 1. Measured on twisted prolates at p = 8, 12, 16: against
+/// equal weights it gains somewhat less and loses six times less of the shape.
+constexpr double weight_kept = 0.1;
+
+double high_degree_share(const Coefficients& x) { return tail_share(x, (x.order + 1) / 2); }
+
+Relabelling relabel(Plans& plans, const Coefficients& x, int grid_order, double stop, int most) {
+  const int p = x.order, cutoff = (p + 1) / 2;
+  const Basis& basis = plans.basis(grid_order, grid_order);
+  const double scale = band_norm(x, 1, p);
+  Relabelling r{grid_order, grid_directions(basis), 0, 0, 0};
+  double first_gradient = -1, least = -1;
+  Matrix best_map = r.map;
+  for (int iteration = 0; iteration <= most; ++iteration) {
+    const FirstDerivatives y = sample_points_first(x, r.map);
+    Coefficients gradient = basis.analyze(y.value);
+    const double kept = band_norm(gradient, cutoff, p), lost = band_norm(gradient, p + 1, grid_order);
+    const double energy = weight_kept * kept * kept + lost * lost;
+    if (iteration == 0) r.high_before = std::hypot(kept, lost) / scale;
+    if (least >= 0 && energy >= least) break;  // the step was too long: keep the last map
+    least = energy;
+    best_map = r.map;
+    r.high_after = std::hypot(kept, lost) / scale;
+    r.lost = lost / scale;
+    gradient.values.topRows(cutoff * cutoff).setZero();
+    gradient.values.middleRows(cutoff * cutoff, coefficient_count(p) - cutoff * cutoff) *= weight_kept;
+    const Matrix slope = basis.synthesize(gradient).values;
+    double length = 0;
+    for (Eigen::Index k = 0; k < r.map.rows(); ++k) {
+      const Vec3 s = r.map.row(k).transpose(), x_t = y.t.row(k).transpose(), x_f = y.f.row(k).transpose();
+      const Vec3 g = slope.row(k).transpose(), normal = x_t.cross(x_f).normalized();
+      length += (g - g.dot(normal) * normal).squaredNorm() * basis.weights()[k];
+      r.map.row(k) = (s + parameter_shift(sphere_frame(s), x_t, x_f, -g)).normalized().transpose();
+    }
+    if (first_gradient < 0) first_gradient = length;
+    if (!std::isfinite(length)) throw std::domain_error("reparametrization: the surface is not regular");
+    if (length <= stop * stop * first_gradient) break;
+  }
+  r.map = std::move(best_map);
+  return r;
+}
+
+Coefficients pulled_back(Plans& plans, const Relabelling& r, const Coefficients& f) {
+  return plans.basis(f.order, r.grid_order).analyze(sample_points(f, r.map));
+}
+
+Matrix carried_points(Plans& plans, const Relabelling& r, const Coefficients& before, const Coefficients& after,
+                      const Matrix& parameters) {
+  const Coefficients map = plans.basis(r.grid_order, r.grid_order).analyze(r.map);
+  const Matrix target = sample_points(before, parameters);
+  Matrix s = parameters;
+  for (int iteration = 0; iteration < 20; ++iteration) {  // inverse of the map: s' <- s' + (s - map(s'))
+    const Matrix image = sample_points(map, s).rowwise().normalized();
+    s = (s + parameters - image).rowwise().normalized();
+  }
+  for (int iteration = 0; iteration < 20; ++iteration) {  // Gauss-Newton onto the nearest point of the new surface
+    const FirstDerivatives x = sample_points_first(after, s);
+    double longest = 0;
+    for (Eigen::Index k = 0; k < s.rows(); ++k) {
+      const Vec3 at = s.row(k).transpose(), miss = (target.row(k) - x.value.row(k)).transpose();
+      const Vec3 shift = parameter_shift(sphere_frame(at), x.t.row(k).transpose(), x.f.row(k).transpose(), miss);
+      longest = std::max(longest, shift.norm());
+      s.row(k) = (at + shift).normalized().transpose();
+    }
+    if (longest < 1e-13) break;
+  }
+  return s;
+}
+
+}  // namespace sim

@@ -1,0 +1,184 @@
+#include "simulate.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+namespace sim {
+
+namespace {
+
+constexpr double same_time = 1e-9;  ///< times nearer than this share of a step are one time
+
+/// Time of the k-th saved state: multiples of save_every, and the end.
+double save_time(const Scene& scene, const Dynamics& d) {
+  if (!scene.time.save_every) return scene.time.end;
+  const double next = double(d.saves) * *scene.time.save_every;
+  return std::min(next, scene.time.end);
+}
+
+/// The step that reaches `target` in equal steps no longer than the present limit.
+double step_length(const Dynamics& d, double target) {
+  const double left = target - d.time;
+  return left / std::max(1.0, std::ceil(left / d.dt_limit - same_time));
+}
+
+/// Halves a failing step down to step / 2^step_retries, and lets it grow again after some calm ones.
+Step step_with_retries(const Setting& s, Dynamics& d, double target, const SimulationObserver& observer) {
+  constexpr std::int64_t calm_enough = 8;
+  const double shortest = std::ldexp(s.scene.time.step, -s.scene.numerics.step_retries);
+  for (int retries = 0;; ++retries) {
+    const double dt = step_length(d, target);
+    try {
+      Step step = take_step(s, d, dt);
+      step.record.retries = retries;
+      if (std::abs(step.dynamics.time - target) < same_time * dt) step.dynamics.time = step.record.time = target;
+      if (++step.dynamics.calm >= calm_enough && d.dt_limit < s.scene.time.step) {
+        step.dynamics.dt_limit = std::min(2 * d.dt_limit, s.scene.time.step);
+        step.dynamics.calm = 0;
+      }
+      return step;
+    } catch (const StepFailure& failure) {
+      if (dt / 2 < shortest * (1 - same_time))
+        throw StepFailure(fmt::format("{}, also in steps of {:.3g}", failure.what(), dt));
+      if (observer.on_warning)
+        observer.on_warning(fmt::format("t = {:.6g}: {}; trying a step of {:.3g}", d.time, failure.what(), dt / 2));
+      d.dt_limit = dt / 2;
+      d.calm = 0;
+    }
+  }
+}
+
+TrajectoryLayout layout_for(const Scene& scene, const Dynamics& d) {
+  TrajectoryLayout layout;
+  layout.vesicles = int(d.vesicles.size());
+  layout.order = layout.label_order = 0;
+  for (const VesicleDynamics& v : d.vesicles) {
+    layout.order = std::max(layout.order, v.position.order);
+    layout.label_order = std::max(layout.label_order, v.labels.order);
+    layout.tracers = int(v.tracers.rows());
+  }
+  const double steps = std::ceil(scene.time.end / scene.time.step);
+  const double saved = scene.time.save_every ? std::ceil(scene.time.end / *scene.time.save_every) : steps;
+  layout.states = std::int64_t(std::min(saved, 1e6)) + 2;
+  layout.steps = std::int64_t(std::min(std::max(steps, saved), 1e7)) + 16;
+  layout.resume = std::int64_t(serialised(d).size());
+  return layout;
+}
+
+/// Renews the resume point after every step, but not more than 20 times a second.
+class ResumeClock {
+ public:
+  bool due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::milliseconds(50)) return false;
+    last_ = now;
+    return true;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_{};
+};
+
+}  // namespace
+
+SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options, const SimulationObserver& observer) {
+  if (scene.numerics.threads > 0) omp_set_num_threads(scene.numerics.threads);
+  Plans plans;
+  const Setting setting = make_setting(scene, plans);
+
+  // The state to start from: the scene's, or the file's last resume point.
+  Dynamics d;
+  std::optional<TrajectoryWriter> file;
+  if (options.resume) {
+    file.emplace(TrajectoryWriter::resume(options.trajectory));
+    d = deserialised(file->resume_payload());
+  } else {
+    d = initial_dynamics(setting);
+    const TrajectoryHeader header{options.scene_text, options.program, options.build, resolution_warnings(setting, d)};
+    if (observer.on_warning)
+      for (const std::string& warning : header.warnings) observer.on_warning(warning);
+    const State first = evaluate(setting, d);
+    const TrajectoryLayout layout = layout_for(scene, d);
+    mark_saved(d, first);
+    file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d)));
+    if (observer.on_state) observer.on_state(first);
+  }
+
+  ResumeClock clock;
+  std::vector<StepRecord> records;
+  const auto warn = [&](const std::string& warning) {
+    file->note(warning);
+    if (observer.on_warning) observer.on_warning(warning);
+  };
+  SimulationObserver noting = observer;
+  noting.on_warning = warn;
+  const auto save = [&] {
+    const State state = evaluate(setting, d);
+    file->append(state, records);
+    records.clear();
+    mark_saved(d, state);
+    if (observer.on_state) observer.on_state(state);
+  };
+  SimulationOutcome outcome;
+  const std::int64_t first_step = d.step;
+  std::vector<bool> warned;  // one warning a vesicle and run: a shape may cross the bound often
+  for (const VesicleDynamics& v : d.vesicles) warned.push_back(v.tail > scene.numerics.tail_warning);
+  while (d.time < scene.time.end * (1 - 1e-12)) {
+    if (options.steps >= 0 && d.step - first_step >= options.steps) {
+      outcome.end = SimulationEnd::step_limit;
+      break;
+    }
+    const bool every_step = !scene.time.save_every;
+    const double target = save_time(scene, d);
+    try {
+      Step step = step_with_retries(setting, d, target, noting);
+      d = std::move(step.dynamics);
+      records.push_back(step.record);
+      if (observer.on_step) observer.on_step(d, step.record);
+      if (every_step || d.time == target) save();
+    } catch (const std::exception& error) {
+      if (dynamic_cast<const StepFailure*>(&error) == nullptr) throw;
+      outcome.end = SimulationEnd::failed;
+      outcome.reason = fmt::format("t = {:.6g}: {}", d.time, error.what());
+      file->note("stopped at " + outcome.reason);
+      break;
+    }
+    for (std::size_t k = 0; k < warned.size(); ++k)
+      if (!warned[k] && d.vesicles[k].tail > scene.numerics.tail_warning) {
+        warned[k] = true;
+        warn(fmt::format("t = {:.6g}: {}", d.time, resolution_warning(setting, d, k)));
+      }
+    if (clock.due()) {
+      file->append_steps(records);
+      records.clear();
+      file->write_resume(serialised(d));
+    }
+    if (observer.should_stop && observer.should_stop()) {
+      outcome.end = SimulationEnd::interrupted;
+      break;
+    }
+  }
+  if (outcome.end == SimulationEnd::failed && file->last_time() < d.time) try {
+      save();  // the last good state
+    } catch (const StepFailure& failure) {
+      file->note(fmt::format("t = {:.6g}: {}", d.time, failure.what()));
+    }
+  file->append_steps(records);
+  file->finish_resume(serialised(d), d.step);
+  outcome.step = d.step;
+  outcome.time = d.time;
+  return outcome;
+}
+
+Preview preview(const Scene& scene) {
+  Plans plans;
+  const Setting setting = make_setting(scene, plans);
+  const Dynamics d = initial_dynamics(setting);
+  return {evaluate(setting, d), resolution_warnings(setting, d)};
+}
+
+}  // namespace sim

@@ -1,0 +1,69 @@
+// The bytes of a trajectory: created and mapped by HDF5, then read and written at fixed offsets without it.
+// Internal to the trajectory.
+#pragma once
+
+#include "trajectory_rows.h"
+
+#include <map>
+
+namespace sim::file {
+
+/// Where the rows of one dataset lie in the file, bytes.
+struct Place {
+  std::uint64_t offset = 0, row_bytes = 0, rows = 0;
+};
+
+/// Everything HDF5 has to say about a file, taken once when it is opened.
+struct Map {
+  TrajectoryHeader header;
+  TrajectoryLayout layout;
+  std::map<std::string, Place, std::less<>> datasets;
+
+  const Place& at(std::string_view name) const { return datasets.find(name)->second; }
+};
+
+inline constexpr std::uint64_t note_bytes = 256, note_rows = 64;
+
+/// Writes an empty file of that layout: header, all datasets allocated (sparse) and zero. Not synced, not renamed.
+void create(const std::filesystem::path&, const TrajectoryLayout&, const TrajectoryHeader&);
+/// Opens read-only, without locking, checks format, names, types and extents, and closes again.
+Map map(const std::filesystem::path&);
+
+/// An open file descriptor whose transfers are complete or an exception with a sentence.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  Descriptor(const std::filesystem::path&, bool writable);
+  Descriptor(Descriptor&&) noexcept;
+  Descriptor& operator=(Descriptor&&) noexcept;
+  ~Descriptor();
+
+  void write(std::uint64_t offset, const void* bytes, std::uint64_t size) const;
+  void read(std::uint64_t offset, void* bytes, std::uint64_t size) const;
+  void sync(bool data_only) const;
+  std::uint64_t inode() const;
+
+ private:
+  std::filesystem::path path_;
+  int fd_ = -1;
+};
+
+/// The right to write PATH: a lock on PATH.lock, given back by the kernel even after kill -9.
+class Lock {
+ public:
+  explicit Lock(const std::filesystem::path&);
+  Lock(Lock&&) noexcept;
+  Lock& operator=(Lock&&) noexcept;
+  ~Lock();
+
+ private:
+  std::filesystem::path path_;
+  int fd_ = -1;
+};
+
+/// Name under which a file is prepared.
+std::filesystem::path temporary(const std::filesystem::path&);
+/// The prepared file takes its name, durably.
+void publish(const std::filesystem::path&);
+
+}  // namespace sim::file

@@ -1,0 +1,154 @@
+// Scene files: what is right is read, what is wrong is told with file, line, column and the nearest good word.
+#include "app/scene_file.h"
+#include "app/scene_text.h"
+#include "tests/support/temporary_folder.h"
+
+#include <catch2/catch.hpp>
+
+using app::parse_scene;
+using app::Settings;
+using Catch::Contains;
+using support::message_of;
+
+namespace {
+
+const std::string good = R"(title = "A \"quoted\" title"
+
+[flow]
+kind = "shear"
+rate = 1.0
+
+[time]
+end = 2
+step = 0.1
+
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.85
+order = 12
+)";
+
+std::string replaced(const std::string& from, const std::string& to) {
+  std::string text = good;
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return message_of([&] { parse_scene(text, "s.toml", ".", overrides); });
+}
+
+}  // namespace
+
+TEST_CASE("a scene is read with its defaults", "[scene]") {
+  const Settings s = parse_scene(good, "s.toml", ".");
+  CHECK(s.scene.title == "A \"quoted\" title");
+  REQUIRE(s.scene.flows.size() == 1);
+  CHECK(s.scene.flows[0].kind == "shear");
+  CHECK(s.scene.time.end == 2);
+  REQUIRE(s.scene.vesicles.size() == 1);
+  CHECK(s.scene.vesicles[0].order == 12);
+  CHECK(s.scene.vesicles[0].reduced_volume == 0.85);
+  CHECK(s.scene.vesicles[0].viscosity_contrast == 1);
+  CHECK(s.scene.numerics.upsampling == 0);
+}
+
+TEST_CASE("the resolved scene gives the same scene again", "[scene]") {
+  for (const std::string& extra :
+       {std::string(), std::string("[[flow]]\nkind = \"poiseuille\"\ncurvature = 0.1\n"), std::string("[numerics]\nupsampling = 3\n"),
+        std::string("[[figure]]\nkind = \"cross-sections\"\ntimes = [0, 1.5]\n[view]\nsize = [160, 90]\n")}) {
+    std::string scene = good;
+    if (extra.starts_with("[[flow]]")) scene = replaced("[flow]", "[[flow]]");
+    const Settings first = parse_scene(scene + extra, "s.toml", ".");
+    const std::string resolved = app::write_scene(first);
+    INFO(resolved);
+    const Settings second = parse_scene(resolved, "resolved", ".");
+    CHECK(app::write_scene(second) == resolved);
+    CHECK(app::physics_hash(first.scene) == app::physics_hash(second.scene));
+    CHECK(app::picture_hash(first) == app::picture_hash(second));
+    CHECK_THAT(resolved, Contains("viscosity_contrast = 1.0"));
+  }
+}
+
+TEST_CASE("numbers are written with the digits that give the same number", "[scene]") {
+  for (const double value : {0.1, 1.0, 1e-10, 12.566370614359172, 1e300, -0.0, 1.0 / 3})
+    CHECK(std::stod(app::toml_value(value)) == value);
+  CHECK(app::toml_value(1.0) == "1.0");
+  CHECK(app::toml_value(sim::unlimited) == "inf");
+}
+
+TEST_CASE("an unknown key is told with line, column and the nearest known one", "[scene]") {
+  CHECK(error_of(replaced("order = 12", "oder = 12")) == "s.toml:14:1: unknown key 'oder' in [vesicle] (did you mean 'order'?)");
+  CHECK(error_of(replaced("[time]", "[tiem]")) == "s.toml:7:2: unknown table 'tiem' (did you mean 'time'?)");
+  CHECK_THAT(error_of(good + "[view]\nstile = \"opaque\"\n"), Contains("s.toml:16:1") && Contains("'style'"));
+}
+
+TEST_CASE("values out of range are told with line, column and range", "[scene]") {
+  CHECK(error_of(replaced("order = 12", "order = 1")) == "s.toml:14:9: 'order' must be at least 2, at most 64, not 1");
+  CHECK(error_of(replaced("order = 12", "viscosity_contrast = -1")) ==
+        "s.toml:14:22: 'viscosity_contrast' must be above 0, not -1");
+  CHECK(error_of(replaced("0.85", "1.2")) == "s.toml:13:18: 'reduced_volume' must be above 0, at most 1, not 1.2");
+  CHECK(error_of(replaced("step = 0.1", "step = 0")) == "s.toml:9:8: 'step' must be above 0, not 0");
+  CHECK_THAT(error_of(replaced("step = 0.1", "step = nan")), Contains("s.toml:9:8"));
+  CHECK_THAT(error_of(replaced("rate = 1.0", "rate = inf")), Contains("s.toml:5:8") && Contains("finite"));
+}
+
+TEST_CASE("values of the wrong type are told with line and column", "[scene]") {
+  CHECK(error_of(replaced("order = 12", "order = \"12\"")) == "s.toml:14:9: 'order' must be a whole number, not the text \"12\"");
+  CHECK(error_of(replaced("order = 12", "order = 12.5")) == "s.toml:14:9: 'order' must be a whole number, not the number 12.5");
+  CHECK_THAT(error_of(replaced("order = 12", "center = [1, 2]")), Contains("s.toml:14:10") && Contains("three numbers"));
+  CHECK_THAT(error_of(replaced("order = 12", "center = [1, 2, \"x\"]")), Contains("s.toml:14:17"));
+  CHECK_THAT(error_of(replaced("[time]", "[[time]]")), Contains("must be one table"));
+}
+
+TEST_CASE("unknown words are told with the nearest known one", "[scene]") {
+  CHECK_THAT(error_of(replaced("prolate", "prolat")), Contains("s.toml:12:9") && Contains("did you mean 'prolate'?") && Contains("list shapes"));
+  CHECK_THAT(error_of(replaced("shear", "sheer")), Contains("s.toml:4:8") && Contains("did you mean 'shear'?"));
+}
+
+TEST_CASE("a key of another kind is refused, a missing one is asked for", "[scene]") {
+  CHECK(error_of(replaced("rate = 1.0", "curvature = 1")) == "s.toml:5:1: 'curvature' is a key of flow 'poiseuille', not of 'shear'");
+  CHECK_THAT(error_of(replaced("reduced_volume = 0.85", "")), Contains("s.toml:12:9") && Contains("needs the key 'reduced_volume'"));
+  CHECK_THAT(error_of(replaced("prolate", "ellipsoid")), Contains("s.toml:13:1") && Contains("'reduced_volume' is a key of shape"));
+  CHECK_THAT(error_of(replaced("rate = 1.0", "frequency = 2.0")), Contains("s.toml:5:13") && Contains("time_factor 'oscillating'"));
+}
+
+TEST_CASE("contradictions and reserved keys are refused", "[scene]") {
+  CHECK(error_of(replaced("step = 0.1", "tolerance = 1e-4")) ==
+        "s.toml:9:13: 'tolerance' is reserved: adaptive steps do not exist yet; give time.step instead");
+  CHECK_THAT(error_of(good + "area = 1\nradius = 2\n"), Contains("s.toml:16:10") && Contains("not both"));
+  CHECK_THAT(error_of(good + "axis = [0, 0, 0]\n"), Contains("s.toml:15:8"));
+  CHECK_THAT(error_of(replaced("end = 2", "")), Contains("s.toml:7:1") && Contains("needs 'end'"));
+  CHECK(error_of("title = \"x\"\n") == "s.toml: the table [[flow]] is missing");
+  CHECK_THAT(error_of(replaced("step = 0.1", "step = ")), Contains("s.toml:9:"));
+}
+
+TEST_CASE("missing files are told", "[scene]") {
+  const support::TemporaryFolder folder;
+  CHECK_THAT(message_of([&] { app::read_scene(folder / "none.toml"); }), Contains("none.toml") && Contains("no such scene"));
+  CHECK_THAT(message_of([&] { app::read_scene(folder.path()); }), Contains("is not a file"));
+  const std::string text = replaced("shape = \"prolate\"\nreduced_volume = 0.85", "shape = \"file\"\nfile = \"blob.txt\"");
+  support::write_file(folder / "s.toml", text);
+  CHECK_THAT(message_of([&] { app::read_scene(folder / "s.toml"); }), Contains("s.toml:13:8") && Contains("blob.txt"));
+}
+
+TEST_CASE("overrides change any key, and their errors name them", "[scene]") {
+  const Settings s = parse_scene(good + "[[vesicle]]\nshape = \"sphere\"\n", "s.toml", ".",
+                                 {"vesicle.order=9", "vesicle.1.order=7", "time.end=5", "numerics.upsampling=2",
+                                  "view.size=[160,90]", "view.style=plain", "flow.rate=2", "title=new"});
+  CHECK(s.scene.vesicles[0].order == 9);
+  CHECK(s.scene.vesicles[1].order == 7);
+  CHECK(s.scene.time.end == 5);
+  CHECK(s.scene.numerics.upsampling == 2);
+  CHECK(s.view.size == std::vector<int>{160, 90});
+  CHECK(s.view.style == "plain");
+  CHECK(s.scene.flows[0].rate == 2);
+  CHECK(s.scene.title == "new");
+  CHECK(error_of(good, {"vesicle.order=1"}) == "--set vesicle.order=1: 'order' must be at least 2, at most 64, not 1");
+  CHECK(error_of(good, {"vesicle.oder=3"}) == "--set vesicle.oder=3: unknown key 'oder' in [vesicle] (did you mean 'order'?)");
+  CHECK_THAT(error_of(good, {"vesicle.1.order=3"}), Contains("numbered from 0 to 0"));
+  CHECK_THAT(error_of(good, {"time.end"}), Contains("section.key=value"));
+  CHECK_THAT(error_of(good, {"viev.size=[1,2]"}), Contains("did you mean 'view'?"));
+  CHECK_THAT(error_of(good, {"view.size=[1,"}), Contains("--set view.size=[1,"));
+}

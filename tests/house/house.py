@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Tests of the house itself: layering, generated pages, commands in the README. One sentence per finding, status 1."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+MODULES = ["sim", "render", "app"]
+# What the pictures may know of the simulation: values and how they are sampled, never operators or steppers.
+RENDER_SEES = {"sim/types.h", "sim/basis.h", "sim/legendre.h", "sim/parameters.h", "sim/catalogue.h", "sim/trajectory.h"}
+HDF5_FILES = re.compile(r"sim/trajectory\w*\.(h|cpp)$")
+GL_FILES = re.compile(r"render/context\w*\.(h|cpp)$")
+GL_WORDS = re.compile(r"\bOSMesa[A-Z]\w*|\begl[A-Z]\w*\s*\(|<EGL/|<GL/osmesa")
+
+
+def listed_files(module):
+    """Files of a module in the order of its CMakeLists.txt."""
+    text = (ROOT / module / "CMakeLists.txt").read_text()
+    body = re.search(r"add_library\(\w+ STATIC\s(.*?)\)", text, re.S).group(1)
+    body = re.sub(r"#.*", "", body)
+    files = [word for word in body.split() if re.fullmatch(r"\w+\.(h|cpp)", word)]
+    if module == "app":
+        files.append("main.cpp")
+    return files
+
+
+def includes(path):
+    return re.findall(r'^\s*#include\s+["<]([^">]+)[">]', path.read_text(), re.M)
+
+
+def layering():
+    findings = []
+    for module in MODULES:
+        files = listed_files(module)
+        order = {name: place for place, name in enumerate(files)}
+        present = {p.name for p in (ROOT / module).glob("*") if p.suffix in (".h", ".cpp")}
+        findings += [f"{module}/{name} is not listed in {module}/CMakeLists.txt" for name in sorted(present - set(files))]
+        findings += [f"{module}/CMakeLists.txt lists {name}, which does not exist" for name in files if name not in present]
+        for name in sorted(present & set(files)):
+            where = f"{module}/{name}"
+            path = ROOT / module / name
+            for include in includes(path):
+                if include in order and order[include] > order[name]:
+                    findings.append(f"{where} includes {include}, which stands below it in {module}/CMakeLists.txt")
+                folder = include.split("/")[0]
+                if folder in MODULES and MODULES.index(folder) > MODULES.index(module):
+                    findings.append(f"{where} includes {include}: {module} must not know {folder}")
+                if module == "render" and folder == "sim" and include not in RENDER_SEES:
+                    findings.append(f"{where} includes {include}: pictures see only {', '.join(sorted(RENDER_SEES))}")
+                if include == "hdf5.h" and not HDF5_FILES.match(where):
+                    findings.append(f"{where} includes hdf5.h, which only the trajectory may")
+            words = GL_WORDS.search(path.read_text())
+            if words and not GL_FILES.match(where):
+                findings.append(f"{where} mentions '{words.group(0)}', which only render/context* may")
+    return findings
+
+
+def reference(program):
+    page = ROOT / "docs" / "reference.md"
+    command = f"{Path(program).name} list parameters --markdown"
+    current = subprocess.run([program, "list", "parameters", "--markdown"], capture_output=True, text=True, check=True).stdout
+    if not page.exists():
+        return [f"docs/reference.md is missing; write it with: {command} > docs/reference.md"]
+    if page.read_text() == current:
+        return []
+    pairs = zip(page.read_text().splitlines() + [""], current.splitlines() + [""])
+    line = next((k for k, (old, new) in enumerate(pairs, 1) if old != new), 0)
+    return [f"docs/reference.md:{line} is not what the program declares; renew it with: {command} > docs/reference.md"]
+
+
+def pages(program):
+    """Every command line in README.md and docs/ names a command that exists and scenes that are there."""
+    help_text = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
+    commands = set(re.findall(r"^\s\s(\w+)\s", help_text.split("Subcommands:")[1], re.M)) | {"test"}
+    findings = []
+    files = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    for path in files:
+        name = path.relative_to(ROOT)
+        if not path.exists():
+            findings.append(f"{name} is missing")
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            for word in re.findall(r"(?:\./tanktread\.sh|(?:^|[\s`/])tanktread) ([a-z]+)(?=[ `]|$)", line):
+                if line.lstrip("$ `").startswith(("./tanktread.sh", "tanktread", "build/release/tanktread")) or "`" in line:
+                    if word not in commands and re.search(r"`[^`]*tanktread(\.sh)? " + word, line):
+                        findings.append(f"{name}:{number} names the command '{word}', which does not exist")
+            for scene in re.findall(r"\bscenes/[\w.-]+\.toml", line):
+                if not (ROOT / scene).exists():
+                    findings.append(f"{name}:{number} names {scene}, which does not exist")
+            for target in re.findall(r"\]\((?!https?:|#)([^)#\s]+)", line):
+                if not (path.parent / target).exists():
+                    findings.append(f"{name}:{number} points to {target}, which does not exist")
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
+    if f"\nversion: {version}\n" not in (ROOT / "CITATION.cff").read_text():
+        findings.append(f"CITATION.cff does not name version {version}")
+    if files[0].exists():
+        text = files[0].read_text()
+        for needed in ("./tanktread.sh run", "./tanktread.sh test"):
+            if needed not in text:
+                findings.append(f"README.md does not name the command '{needed}'")
+    return findings
+
+
+def main():
+    checks = {"layering": layering, "reference": reference, "pages": pages}
+    findings = checks[sys.argv[1]](*sys.argv[2:])
+    for finding in findings:
+        print(finding)
+    return 1 if findings else 0
+
+
+sys.exit(main())

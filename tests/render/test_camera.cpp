@@ -1,0 +1,107 @@
+// Where pictures are seen from, and how a movie is framed.
+#include "render/camera.h"
+
+#include "surfaces.h"
+#include "tests/support/temporary_folder.h"
+
+#include <catch2/catch.hpp>
+
+using sim::Vec3;
+
+namespace {
+
+Eigen::Vector3f projected(const render::Camera& camera, const Vec3& p) {
+  const Eigen::Vector4f clip = camera.projection * camera.view * Eigen::Vector4d(p.x(), p.y(), p.z(), 1).cast<float>();
+  return clip.head<3>() / clip.w();
+}
+
+std::vector<render::StateSummary> drifting(double distance, int states = 20) {
+  std::vector<render::StateSummary> all;
+  for (int k = 0; k < states; ++k)
+    all.push_back(render::summarize(surfaces::state_of({surfaces::sphere({distance * k / (states - 1), 0, 0.3})})));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("the flow-gradient camera has x to the right and z up, seen from -y") {
+  const auto states = drifting(0, 2);
+  const render::Camera camera = render::make_camera(render::frame_trajectory(states, {}), states[0].centroid);
+  const Eigen::Vector3f centre = projected(camera, {0, 0, 0.3});
+  CHECK(centre.x() == Approx(0).margin(1e-5));
+  CHECK(centre.y() == Approx(0).margin(1e-5));
+  CHECK(projected(camera, {0.5, 0, 0.3}).x() > 0.05);
+  CHECK(projected(camera, {0, 0, 0.8}).y() > 0.05);
+  CHECK(projected(camera, {0, -1, 0.3}).z() < projected(camera, {0, 1, 0.3}).z());
+}
+
+TEST_CASE("every camera of the catalogue is a right-handed orthonormal frame") {
+  for (const render::CameraRow& row : render::cameras()) {
+    INFO(row.name);
+    Eigen::Matrix3d axes;
+    axes << row.axes.right, row.axes.up, row.axes.back;
+    CHECK((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm() < 1e-12);
+    CHECK(axes.determinant() == Approx(1));
+  }
+}
+
+TEST_CASE("all points of all states lie inside the picture, in every camera and projection") {
+  for (const render::CameraRow& row : render::cameras())
+    for (const char* projection : {"perspective", "orthographic"})
+      for (const double drift : {0.0, 2.0, 60.0}) {
+        render::ViewParameters view;
+        view.camera = row.name;
+        view.projection = projection;
+        const auto states = drifting(drift);
+        const render::Framing framing = render::frame_trajectory(states, view);
+        double furthest = 0;
+        for (const render::StateSummary& state : states) {
+          const render::Camera camera = render::make_camera(framing, state.centroid);
+          for (Eigen::Index i = 0; i < state.points.cols(); ++i) {
+            const Eigen::Vector3f p = projected(camera, state.points.col(i).cast<double>());
+            furthest = std::max({furthest, std::abs(double(p.x())), std::abs(double(p.y()))});
+            CHECK(std::abs(p.z()) < 1);
+          }
+        }
+        INFO(row.name << " " << projection << " drift " << drift);
+        CHECK(furthest < 0.9);
+        CHECK(furthest > 0.7);  // and the picture is filled
+      }
+}
+
+TEST_CASE("the camera stays until the drift exceeds a few radii, then follows") {
+  CHECK_FALSE(render::frame_trajectory(drifting(2), {}).follows);
+  CHECK(render::frame_trajectory(drifting(10), {}).follows);
+  render::ViewParameters never;
+  never.follow = "never";
+  CHECK_FALSE(render::frame_trajectory(drifting(10), never).follows);
+  render::ViewParameters always;
+  always.follow = "always";
+  const auto states = drifting(1);
+  const render::Framing framing = render::frame_trajectory(states, always);
+  CHECK(framing.follows);
+  CHECK(render::make_camera(framing, {5, 6, 7}).target.isApprox(Vec3(5, 6, 7), 1e-3));
+}
+
+TEST_CASE("a fixed camera gives one and the same matrix for every frame") {
+  const auto states = drifting(2);
+  const render::Framing framing = render::frame_trajectory(states, {});
+  CHECK(render::make_camera(framing, states.front().centroid).view ==
+        render::make_camera(framing, states.back().centroid).view);
+}
+
+TEST_CASE("arrows of a following camera stay at rest in space") {
+  const auto states = drifting(40, 41);
+  const render::Framing framing = render::frame_trajectory(states, {});
+  REQUIRE(framing.follows);
+  const sim::Matrix a = render::arrow_points(framing, {10, 0, 0.3}), b = render::arrow_points(framing, {10.1, 0, 0.3});
+  int common = 0;
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    for (Eigen::Index j = 0; j < b.rows(); ++j) common += (a.row(i) - b.row(j)).norm() < 1e-9;
+  CHECK(common > 0.7 * static_cast<double>(a.rows()));
+}
+
+TEST_CASE("an unknown camera is refused with the nearest known word") {
+  CHECK_THAT(support::message_of([] { render::find_camera("flow-gradiant"); }),
+             Catch::Contains("did you mean 'flow-gradient'"));
+}

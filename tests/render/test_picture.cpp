@@ -1,0 +1,286 @@
+// What is drawn, measured against geometry.
+#include "render/draw.h"
+#include "render/style.h"
+
+#include "surfaces.h"
+#include "tests/support/temporary_folder.h"
+
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+using render::Image;
+using sim::Vec3;
+using surfaces::turn;
+
+namespace {
+
+bool drawn(const std::uint8_t* p) { return p[0] != 255 || p[1] != 255 || p[2] != 255; }
+
+struct Silhouette {
+  double area = 0;      // length^2
+  double x = 0, y = 0;  // centroid, px
+};
+
+Silhouette silhouette(const Image& image, const render::Camera& camera) {
+  Silhouette s;
+  double count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (drawn(image.at(x, y))) {
+        count += 1;
+        s.x += x + 0.5;
+        s.y += y + 0.5;
+      }
+  const double pixel = 2 * camera.half_width / image.width;
+  s.area = count * pixel * pixel;
+  s.x /= count;
+  s.y /= count;
+  return s;
+}
+
+double brightness(const std::uint8_t* p) { return (p[0] + p[1] + p[2]) / 765.0; }
+
+/// Mean brightness of image / reference over pixels between two distances from a place.
+double relative_brightness(const Image& image, const Image& reference, double cx, double cy, double from, double to) {
+  double a = 0, b = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const double r = std::hypot(x + 0.5 - cx, y + 0.5 - cy);
+      if (r < from || r >= to) continue;
+      a += brightness(image.at(x, y));
+      b += brightness(reference.at(x, y));
+    }
+  return a / b;
+}
+
+render::Renderer software() { return render::Renderer(render::parse_gl_choice("software")); }
+
+}  // namespace
+
+TEST_CASE("the silhouette of a sphere has the area of its disc and its centre in the middle") {
+  render::Renderer renderer = software();
+  const render::Frame frame =
+      surfaces::frame_of(surfaces::state_of({surfaces::sphere({3, -2, 1}, 1.7)}), surfaces::bare_view());
+  const Silhouette s = silhouette(render::draw_frame(renderer, frame), frame.camera);
+  CHECK(s.area == Approx(std::numbers::pi * 1.7 * 1.7).epsilon(1.5e-3));
+  CHECK(s.x == Approx(240).margin(0.25));
+  CHECK(s.y == Approx(240).margin(0.25));
+}
+
+TEST_CASE("the silhouette of an ellipsoid has the area of its projection") {
+  render::Renderer renderer = software();
+  const Vec3 a(1.5, 0.9, 0.6);
+  for (const render::CameraRow& row : render::cameras()) {
+    INFO(row.name);
+    const Eigen::Matrix3d r = turn(37, {1, 2, -1});
+    render::ViewParameters view = surfaces::bare_view();
+    view.camera = row.name;
+    const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid(a, r)}), view);
+    const Vec3 d = r.transpose() * row.axes.back;  // line of sight in the ellipsoid's axes
+    const double exact =
+        std::numbers::pi * Vec3(a.y() * a.z() * d.x(), a.x() * a.z() * d.y(), a.x() * a.y() * d.z()).norm();
+    CHECK(silhouette(render::draw_frame(renderer, frame), frame.camera).area == Approx(exact).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("along a parallel of a sphere the meridians lie where they must") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(960, 960);
+  const render::Frame plain = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), view);
+  render::Frame lined = plain;
+  lined.view.style = "opaque";
+  const Image a = render::draw_frame(renderer, plain), b = render::draw_frame(renderer, lined);
+  const double px = 480 / plain.camera.half_width, z = 0.13;  // 7.5 degrees above the equator: between two parallels
+  const int row = static_cast<int>(480 - z * px);
+  std::vector<double> places;
+  for (int x = 0; x < 960;) {
+    double weight = 0, sum = 0;
+    for (; x < 960 && brightness(a.at(x, row)) - brightness(b.at(x, row)) > 0.04; ++x) {
+      const double dark = brightness(a.at(x, row)) - brightness(b.at(x, row));
+      weight += dark;
+      sum += dark * (x + 0.5);
+    }
+    if (weight > 0)
+      places.push_back(sum / weight);
+    else
+      ++x;
+  }
+  REQUIRE(places.size() == 11);  // 24 meridians: every 15 degrees from -75 to 75, the ones at +-90 lie on the contour
+  for (int k = -5; k <= 5; ++k) {
+    const double exact = 480 + px * std::sqrt(1 - z * z) * std::sin(k * std::numbers::pi / 12);
+    CHECK(places[static_cast<std::size_t>(k + 5)] == Approx(exact).margin(1.0));
+  }
+}
+
+TEST_CASE("lines do not clot at a pole") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(600, 600);
+  view.camera = "flow-vorticity";  // looks onto the pole theta = 0
+  view.supersampling = 2;
+  for (const double stretch : {0.3, 1.0, 2.0}) {
+    const render::Frame plain =
+        surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid({1, 1, stretch}, turn(0, {0, 0, 1}))}), view);
+    render::Frame lined = plain;
+    lined.view.style = "opaque";
+    const Image a = render::draw_frame(renderer, plain), b = render::draw_frame(renderer, lined);
+    INFO("stretch " << stretch);
+    const double near = relative_brightness(b, a, 300, 300, 0, 12), ring = relative_brightness(b, a, 300, 300, 12, 40),
+                 body = relative_brightness(b, a, 300, 300, 40, 200);
+    CHECK(near > 0.72);  // the dot itself and four lines
+    CHECK(ring > 0.90);
+    CHECK(body > 0.90);
+    CHECK(body < 0.985);  // there are lines
+  }
+}
+
+TEST_CASE("lines belong to the material: another parametrisation draws the same picture without a seam") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(400, 400);
+  view.style = "opaque";
+  view.supersampling = 2;
+  const Vec3 axes(1.3, 0.8, 0.9);
+  const render::Camera camera =
+      surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid(axes, turn(0, {0, 0, 1}))}), view).camera;
+  const auto picture = [&](const Eigen::Matrix3d& r) {
+    // the same points with the same labels, reached by parameters that are turned by r
+    render::Frame frame = surfaces::frame_of(
+        surfaces::state_of({surfaces::vesicle([&](const Vec3& s) -> Vec3 { return axes.cwiseProduct(r * s); },
+                                              [&](const Vec3& s) -> Vec3 { return r * s; })}),
+        view);
+    frame.camera = camera;
+    return render::draw_frame(renderer, frame);
+  };
+  const Image front = picture(turn(-90, {0, 0, 1}));  // the mesh's first column faces the viewer
+  for (const Eigen::Matrix3d& r : {turn(20, {0, 0, 1}), turn(90, {1, 0, 0}), turn(63, {1, -2, 3})}) {
+    const render::ImageDifference d = render::difference(front, picture(r));
+    INFO("max " << d.maximum << " above two " << d.above_two << " rmse " << d.rmse);
+    CHECK(d.rmse < 1.2);  // contours are polygons of other points: a few pixels there
+    CHECK(d.above_two < 0.012 * 400 * 400);
+  }
+  view.lines = "grid";
+  CHECK(render::difference(front, picture(turn(63, {1, -2, 3}))).rmse > 5);
+}
+
+TEST_CASE("the nearer vesicle hides the farther one") {
+  render::Renderer renderer = software();
+  const auto count_blue = [&](double y) {
+    const render::Frame frame = surfaces::frame_of(
+        surfaces::state_of({surfaces::sphere(), surfaces::sphere({0, y, 0}, 0.5)}), surfaces::bare_view(200, 200));
+    const Image image = render::draw_frame(renderer, frame);
+    int blue = 0;
+    for (int yy = 0; yy < 200; ++yy)
+      for (int x = 0; x < 200; ++x) blue += image.at(x, yy)[2] > image.at(x, yy)[0] + 10;
+    return blue;
+  };
+  CHECK(count_blue(3) == 0);  // behind, seen from -y
+  CHECK(count_blue(-3) > 1000);
+}
+
+TEST_CASE("tracer dots are round on a sphere, in the two colours, and only on the side that is seen") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(600, 600);
+  view.tracers = true;
+  const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), view);
+  render::Frame without = frame;
+  without.view.tracers = false;
+  const Image a = render::draw_frame(renderer, frame), b = render::draw_frame(renderer, without);
+  const double px = 300 / frame.camera.half_width;
+  double count = 0, cx = 0, cz = 0, xx = 0, zz = 0;
+  for (int y = 0; y < 600; ++y)
+    for (int x = 0; x < 600; ++x) {
+      const double dx = (x + 0.5 - 300) / px, dz = (300 - y - 0.5) / px;
+      if (std::hypot(dx, dz) > 0.2) continue;  // the dot at -y, which faces the viewer
+      const std::uint8_t *p = a.at(x, y), *q = b.at(x, y);
+      if (std::abs(p[0] - q[0]) + std::abs(p[1] - q[1]) + std::abs(p[2] - q[2]) < 30) continue;
+      count += 1;
+      cx += dx;
+      cz += dz;
+      xx += dx * dx;
+      zz += dz * dz;
+    }
+  CHECK(count / (px * px) == Approx(std::numbers::pi * 0.088 * 0.088).epsilon(0.06));
+  CHECK(cx / count == Approx(0).margin(2e-3));
+  CHECK(cz / count == Approx(0).margin(2e-3));
+  CHECK(xx / zz == Approx(1).epsilon(0.02));
+  CHECK(a.at(300, 300)[2] > a.at(300, 300)[0]);  // -y: x + y + z < 0, the dark blue one
+  for (int k = 0; k < 14; ++k) {
+    const Vec3 s = surfaces::dots().row(k);
+    CHECK(render::tracer_is_bright(k) == (s.sum() > 0));
+  }
+}
+
+TEST_CASE("supersampling changes contours, not areas of even colour") {
+  render::Renderer renderer = software();
+  render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), surfaces::bare_view(200, 200));
+  const Image one = render::draw_frame(renderer, frame);
+  frame.view.supersampling = 3;
+  const Image three = render::draw_frame(renderer, frame);
+  for (int y = 70; y < 130; ++y)
+    for (int x = 70; x < 130; ++x) CHECK(std::abs(one.at(x, y)[0] - three.at(x, y)[0]) <= 2);
+}
+
+TEST_CASE("arrows point along the flow and none is drawn where it rests") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(400, 300);
+  view.flow_arrows = true;
+  render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), view);
+  frame.bodies.clear();
+  frame.arrows.points = sim::Matrix::Zero(3, 3);
+  frame.arrows.points.col(2) << -0.5, 0, 0.5;
+  frame.arrows.velocities = sim::Matrix::Zero(3, 3);
+  frame.arrows.velocities.col(0) << -1, 0, 1;
+  const Image image = render::draw_frame(renderer, frame);
+  const auto extent = [&](int from, int to) {  // number of drawn px in the left and right half of a band of rows
+    std::pair<int, int> sides{0, 0};
+    for (int y = from; y < to; ++y)
+      for (int x = 0; x < 400; ++x)
+        if (drawn(image.at(x, y))) ++(x < 200 ? sides.first : sides.second);
+    return sides;
+  };
+  const auto upper = extent(0, 130), middle = extent(130, 170), lower = extent(170, 300);
+  CHECK(upper.second > upper.first);  // the head is at the right
+  CHECK(lower.first > lower.second);
+  CHECK(middle == std::pair<int, int>{0, 0});
+  CHECK(upper.first > 20);
+}
+
+TEST_CASE("captions are drawn where asked for and leave the rest alone") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(480, 270);
+  render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), view);
+  frame.captions.time = "γ̇t = 12.50";
+  frame.captions.parameters = "λ = 1   ν = 0.85";
+  const Image off = render::draw_frame(renderer, frame);
+  frame.view.time_stamp = frame.view.caption = frame.view.scale_bar = true;
+  const Image on = render::draw_frame(renderer, frame);
+  int upper = 0, lower = 0, elsewhere = 0;
+  for (int y = 0; y < 270; ++y)
+    for (int x = 0; x < 480; ++x) {
+      const bool differs = !std::equal(on.at(x, y), on.at(x, y) + 3, off.at(x, y));
+      if (y < 45)
+        upper += differs;
+      else if (y > 240)
+        lower += differs;
+      else
+        elsewhere += differs;
+    }
+  CHECK(upper > 200);
+  CHECK(lower > 60);
+  CHECK(elsewhere == 0);
+}
+
+TEST_CASE("every style of the catalogue draws its own picture") {
+  render::Renderer renderer = software();
+  std::vector<Image> pictures;
+  for (const render::StyleRow& row : render::styles()) {
+    render::ViewParameters view = surfaces::bare_view(200, 150);
+    view.style = row.name;
+    view.outline_width = 2.2;
+    pictures.push_back(render::draw_frame(
+        renderer, surfaces::frame_of(surfaces::state_of({surfaces::disc(turn(60, {1, 0, 0}))}), view)));
+    for (std::size_t k = 0; k + 1 < pictures.size(); ++k)
+      CHECK(render::difference(pictures[k], pictures.back()).rmse > 1);
+  }
+  CHECK_THAT(support::message_of([] { render::find_style("opaqe"); }), Catch::Contains("did you mean 'opaque'"));
+}

@@ -1,0 +1,122 @@
+// Plane sections of spectral surfaces, and moments of the volume inside.
+#include "render/section.h"
+#include "render/surface.h"
+
+#include "surfaces.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+using render::ClosedCurve;
+using render::CutPlane;
+using sim::Vec3;
+using surfaces::turn;
+
+namespace {
+
+/// Circumference of an ellipse by the arithmetic-geometric mean.
+double circumference(double a, double b) {
+  double x = a, y = b, sum = 0, power = 0.5;
+  for (int i = 0; i < 6; ++i) {  // quadratic convergence; more would only add rounding
+    const double c = x * x - y * y;
+    sum += power * c;
+    power *= 2;
+    const double mean = (x + y) / 2;
+    y = std::sqrt(x * y);
+    x = mean;
+  }
+  return 2 * std::numbers::pi / x * (a * a - sum);
+}
+
+}  // namespace
+
+TEST_CASE("a section of an ellipsoid is one ellipse of the right area and circumference") {
+  for (const double y : {0.0, 0.31, -0.7}) {
+    CutPlane plane;
+    plane.origin = {0.2, y, -0.4};
+    const sim::Coefficients x = surfaces::ellipsoid({1.6, 1.0, 0.7}, turn(0, {0, 0, 1})).position;
+    const std::vector<ClosedCurve> curves = render::cut(x, plane);
+    REQUIRE(curves.size() == 1);
+    const double f = std::sqrt(1 - y * y);
+    CHECK(render::enclosed_area(curves[0]) == Approx(std::numbers::pi * 1.6 * 0.7 * f * f).epsilon(1e-5));
+    CHECK(render::length(curves[0]) == Approx(circumference(1.6 * f, 0.7 * f)).epsilon(1e-5));
+    for (Eigen::Index i = 0; i < curves[0].points.rows(); ++i) {  // every point lies on the ellipse
+      const double u = (curves[0].points(i, 0) + 0.2) / 1.6, w = (curves[0].points(i, 1) - 0.4) / 0.7;
+      CHECK(u * u + w * w == Approx(f * f).epsilon(1e-10));
+      CHECK(std::abs(curves[0].tangents(i, 0) * u / 1.6 + curves[0].tangents(i, 1) * w / 0.7) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("the circumference of a circle is 2 pi r") { CHECK(circumference(2, 2) == Approx(4 * std::numbers::pi)); }
+
+TEST_CASE("a section does not depend on where the parametrisation has its pole") {
+  const Eigen::Matrix3d r = turn(30, {0, 1, 0});
+  std::vector<double> areas;
+  for (const Eigen::Matrix3d& q : {turn(0, {0, 0, 1}), turn(90, {1, 0, 0}), turn(90, {0, 1, 0}), turn(40, {1, 2, 3})}) {
+    const auto x =
+        surfaces::vesicle([&](const Vec3& s) -> Vec3 { return r * Vec3(1.5, 0.8, 0.9).cwiseProduct(q * s); });
+    const std::vector<ClosedCurve> curves = render::cut(x.position, {});
+    REQUIRE(curves.size() == 1);
+    areas.push_back(render::enclosed_area(curves[0]));
+  }
+  for (const double area : areas) CHECK(area == Approx(std::numbers::pi * 1.5 * 0.9).epsilon(1e-5));
+}
+
+TEST_CASE("the biconcave disc is cut along its profile") {
+  const std::vector<ClosedCurve> curves = render::cut(surfaces::disc(turn(0, {0, 0, 1})).position, {});
+  REQUIRE(curves.size() == 1);
+  double area = 0;  // of the profile, by the trapezoidal rule, exponentially convergent
+  for (int i = 0; i < 400; ++i) {
+    const double t = std::numbers::pi * i / 200, q = std::sin(t) * std::sin(t), k = 1.191602667;
+    const double z = k * 0.5 * 1.022378509 * std::cos(t) * (0.207 + 2.003 * q - 1.123 * q * q);
+    area += z * k * std::cos(t) * std::numbers::pi / 200;
+  }
+  CHECK(render::enclosed_area(curves[0]) == Approx(area).epsilon(1e-5));
+}
+
+TEST_CASE("a bent shape that the plane cuts twice gives two closed curves") {
+  const auto banana = surfaces::vesicle([](const Vec3& s) -> Vec3 {
+    return {1.8 * s.x(), 0.45 * s.y() + 1.1 * s.x() * s.x(), 0.45 * s.z()};
+  });
+  CutPlane plane;
+  plane.origin = {0, 0.8, 0};
+  const std::vector<ClosedCurve> curves = render::cut(banana.position, plane);
+  REQUIRE(curves.size() == 2);
+  CHECK(render::enclosed_area(curves[0]) == Approx(render::enclosed_area(curves[1])).epsilon(1e-6));
+  CHECK(render::enclosed_area(curves[0]) > 0.05);
+  const double left = std::min(curves[0].points.col(0).mean(), curves[1].points.col(0).mean());
+  const double right = std::max(curves[0].points.col(0).mean(), curves[1].points.col(0).mean());
+  CHECK(left == Approx(-right).epsilon(0.02));
+  CHECK(right > 1);
+}
+
+TEST_CASE("a plane that misses the vesicle gives no curve") {
+  CutPlane plane;
+  plane.origin = {0, 1.2, 0};
+  CHECK(render::cut(surfaces::sphere().position, plane).empty());
+}
+
+TEST_CASE("volume, centre of mass and second moments of an ellipsoid are exact") {
+  const Vec3 a(1.6, 1.1, 0.5), centre(0.3, -4, 2);
+  const Eigen::Matrix3d r = turn(48, {1, 1, 2});
+  const render::VolumeMoments m = render::volume_moments(surfaces::ellipsoid(a, r, centre).position);
+  CHECK(m.volume == Approx(4 * std::numbers::pi / 3 * a.prod()).epsilon(1e-12));
+  CHECK((m.centroid - centre).norm() < 1e-11);
+  const Eigen::Matrix3d exact = r * Vec3(a.cwiseProduct(a) / 5).asDiagonal() * r.transpose();
+  CHECK((m.second - exact).norm() < 1e-10);
+}
+
+TEST_CASE("normals of the surface are those of the ellipsoid, poles included") {
+  const Vec3 a(1.4, 0.8, 0.6);
+  const auto x = surfaces::ellipsoid(a, turn(0, {0, 0, 1}));
+  sim::Matrix s(5, 3);
+  s << 0, 0, 1, 0, 0, -1, 1, 0, 0, 0.6, 0, 0.8, -0.48, 0.6, -0.64;
+  const render::SurfacePoints points = render::surface_points(x.position, s);
+  for (Eigen::Index i = 0; i < s.rows(); ++i) {
+    const Vec3 exact = Vec3(s.row(i).transpose().cwiseQuotient(a)).normalized();
+    CHECK((Vec3(points.normal.row(i)) - exact).norm() < 1e-6);
+  }
+}

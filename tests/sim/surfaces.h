@@ -1,0 +1,98 @@
+// Surfaces and fields that the tests of sim share.
+#pragma once
+
+#include "sim/membrane.h"
+#include "sim/shapes.h"
+#include "sim/stepper.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace test {
+
+inline constexpr double pi = std::numbers::pi;
+
+inline sim::VesicleParameters vesicle(std::string shape, double nu, int order, double lambda = 1) {
+  sim::VesicleParameters v;
+  v.shape = std::move(shape);
+  if (v.shape != "sphere") v.reduced_volume = nu;
+  v.order = order;
+  v.viscosity_contrast = lambda;
+  return v;
+}
+
+inline sim::Coefficients surface(std::string shape, double nu, int order) {
+  return sim::initial_position(vesicle(std::move(shape), nu, order));
+}
+
+inline sim::Coefficients ellipsoid(const sim::Vec3& axes, int order) {
+  sim::VesicleParameters v;
+  v.shape = "ellipsoid";
+  v.axes = axes;
+  v.order = order;
+  return sim::initial_position(v);
+}
+
+/// A lopsided smooth shape without any symmetry.
+inline sim::Coefficients potato(int order) {
+  sim::VesicleParameters v;
+  v.shape = "harmonics";
+  v.coefficients = {{2, 0, 0.3}, {2, 1, 0.15}, {3, -2, 0.1}, {3, 3, -0.12}};
+  v.order = order;
+  v.axis = {1, 0.4, -0.3};
+  return sim::initial_position(v);
+}
+
+/// Random coefficients that fall off by 2^-n, always the same.
+inline sim::Coefficients smooth_field(int order, int degree, int fields, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  sim::Coefficients c{order, sim::Matrix::Zero(sim::coefficient_count(order), fields)};
+  for (int n = 0; n <= degree; ++n)
+    for (int row = n * n; row < (n + 1) * (n + 1); ++row)
+      for (int f = 0; f < fields; ++f) c.values(row, f) = uniform(random) * std::pow(2.0, -n);
+  return c;
+}
+
+inline sim::Coefficients constant_field(int order, const sim::Vec3& value) {
+  sim::Coefficients c{order, sim::Matrix::Zero(sim::coefficient_count(order), 3)};
+  c.values.row(0) = std::sqrt(4 * pi) * value.transpose();
+  return c;
+}
+
+inline sim::Motion at_rest(int order) {
+  return {{order, sim::Matrix::Zero(sim::coefficient_count(order), 3)},
+          {order, sim::Matrix::Zero(sim::coefficient_count(order), 1)}};
+}
+
+inline sim::FlowParameters shear(double rate = 1) {
+  sim::FlowParameters f;
+  f.kind = "shear";
+  f.rate = rate;
+  return f;
+}
+
+inline sim::Scene shear_scene(const sim::VesicleParameters& v, double step, double end, std::string scheme = "bdf2") {
+  sim::Scene scene;
+  scene.flows.push_back(shear());
+  scene.vesicles.push_back(v);
+  scene.time.step = step;
+  scene.time.end = end;
+  scene.time.scheme = std::move(scheme);
+  return scene;
+}
+
+/// Takes `count` equal steps.
+inline sim::Dynamics advanced(const sim::Setting& s, sim::Dynamics d, double dt, int count) {
+  for (int k = 0; k < count; ++k) d = sim::take_step(s, d, dt).dynamics;
+  return d;
+}
+
+inline sim::Matrix cross_rows(const sim::Vec3& w, const sim::Matrix& x) {
+  sim::Matrix u(x.rows(), 3);
+  for (Eigen::Index k = 0; k < x.rows(); ++k) u.row(k) = w.cross(sim::Vec3(x.row(k).transpose())).transpose();
+  return u;
+}
+
+}  // namespace test

@@ -1,0 +1,102 @@
+#include "surfaces.h"
+
+#include <catch2/catch.hpp>
+
+using namespace sim;
+using test::pi;
+
+namespace {
+
+double energy(const Basis& basis, const Coefficients& x) { return measures(geometry(basis, x)).h_squared; }
+
+}  // namespace
+
+TEST_CASE("the bending force is minus the gradient of the bending energy") {
+  const int p = 8, q = 40;
+  const Coefficients x = test::potato(p), v = test::smooth_field(p, 5, 3, 21);
+  const Basis field(p, q), full(q, q);
+  const Geometry g = geometry(field, x);
+  const double kappa = 0.7;
+  const Matrix f = bending_force({field, full}, g, kappa, x);
+  const double power = integrate(g, f.cwiseProduct(field.synthesize(v).values).rowwise().sum());
+  const double h = 1e-4;
+  const auto moved = [&](double s) { return energy(field, {p, x.values + s * v.values}); };
+  // Fourth-order difference: error h^4 times a fifth derivative.
+  const double slope = (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
+  CHECK(power == Approx(-kappa * slope).epsilon(1e-6));
+}
+
+TEST_CASE("the tension force is dual to the surface divergence") {
+  const int p = 8, q = 40;
+  const Coefficients x = test::potato(p), u = test::smooth_field(p, 6, 3, 4), sigma = test::smooth_field(p, 6, 1, 5);
+  const Basis field(p, q), full(q, q);
+  const Geometry g = geometry(field, x);
+  const FirstDerivatives d = field.first(u);
+  const double left = integrate(g, field.synthesize(sigma).values.col(0).cwiseProduct(surface_divergence(g, d.t, d.f)));
+  const double right =
+      -integrate(g, tension_force({field, full}, g, sigma).cwiseProduct(d.value).rowwise().sum());
+  CHECK(left == Approx(right).epsilon(1e-8));
+}
+
+TEST_CASE("a sphere feels no bending force, and a constant tension presses it by 2 sigma / R") {
+  const int p = 8, q = 16;
+  VesicleParameters v = test::vesicle("sphere", 1, p);
+  v.radius = 2;
+  const Coefficients x = initial_position(v);
+  const Basis field(p, q), full(q, q);
+  const Geometry g = geometry(field, x);
+  CHECK(bending_force({field, full}, g, 1, x).cwiseAbs().maxCoeff() < 1e-11);
+  Coefficients sigma{p, Matrix::Zero(coefficient_count(p), 1)};
+  sigma.values(0, 0) = 3 * std::sqrt(4 * pi);
+  CHECK((tension_force({field, full}, g, sigma) + 3 * g.n).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("membrane forces exert neither a net force nor a net torque") {
+  const int p = 10, q = 50;
+  const Coefficients x = test::potato(p), sigma = test::smooth_field(p, 4, 1, 8);
+  const Basis field(p, q), full(q, q);
+  const Geometry g = geometry(field, x);
+  const Matrix f = membrane_force({field, full}, g, 0.3, x, sigma);
+  Vec3 force = f.transpose() * g.dA, torque = Vec3::Zero();
+  for (Eigen::Index k = 0; k < f.rows(); ++k)
+    torque += g.dA[k] * Vec3(g.x.value.row(k).transpose()).cross(Vec3(f.row(k).transpose()));
+  CHECK(force.norm() < 1e-6);
+  CHECK(torque.norm() < 1e-6);
+}
+
+TEST_CASE("every flow of the catalogue is free of divergence and has a harmonic vorticity") {
+  FlowParameters f;
+  f.rate = 1.3, f.curvature = 0.4, f.centreline_velocity = 2, f.angular_velocity = {1, 2, 3}, f.velocity = {4, 5, 6};
+  const Vec3 at(0.3, -0.7, 1.1);
+  const double h = 1e-3;
+  for (const auto& row : flow_catalogue())
+    for (const bool planar : {true, false}) {
+      f.planar = planar;
+      const auto u = [&](const Vec3& x) { return row.function(f, x); };
+      double divergence = 0;
+      Vec3 laplacian = Vec3::Zero();
+      for (int d = 0; d < 3; ++d) {
+        const Vec3 e = h * Vec3::Unit(d);
+        divergence += (u(at + e)[d] - u(at - e)[d]) / (2 * h);
+        laplacian += (u(at + e) + u(at - e) - 2 * u(at)) / (h * h);
+      }
+      CHECK(std::abs(divergence) < 1e-11);
+      // A gradient of pressure: at most the constant one of the parabolic flow, -4 a e_x.
+      const Vec3 expected = row.name == "poiseuille" ? Vec3(-4 * f.curvature, 0, 0) : Vec3(Vec3::Zero());
+      CHECK((laplacian - expected).norm() < 1e-8);
+    }
+}
+
+TEST_CASE("flows add up and follow their time factors") {
+  FlowParameters a = test::shear(2), b = test::shear(3), c = test::shear(5);
+  b.time_factor = "oscillating";
+  b.frequency = 0.5;
+  c.time_factor = "step";
+  c.from = 1;
+  c.until = 2;
+  const std::vector<FlowParameters> flows{a, b, c};
+  const Matrix at = Vec3(0, 0, 1).transpose();
+  CHECK(background_velocity(flows, 0, at)(0, 0) == Approx(5));
+  CHECK(background_velocity(flows, 1, at)(0, 0) == Approx(2 - 3 + 5));
+  CHECK(background_velocity(flows, 2, at)(0, 0) == Approx(2 + 3));
+}

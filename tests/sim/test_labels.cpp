@@ -1,0 +1,109 @@
+#include "surfaces.h"
+
+#include <catch2/catch.hpp>
+
+using namespace sim;
+using test::pi;
+
+namespace {
+
+/// A prolate whose grid has been twisted by the flow: something a relabelling has work to do on.
+Dynamics twisted(const Setting& s, int steps = 12) { return test::advanced(s, initial_dynamics(s), 0.1, steps); }
+
+Scene twist_scene(const char* mode) {
+  Scene scene = test::shear_scene(test::vesicle("prolate", 0.85, 12), 0.1, 10);
+  scene.numerics.reparametrization = mode;
+  return scene;
+}
+
+/// Parameters s where the label field has the value `label`, near `start`: Newton on the sphere with sampled slopes.
+Vec3 where_label_is(const Coefficients& labels, const Vec3& label, Vec3 s) {
+  const auto value = [&](const Vec3& at) { return Vec3(sample_points(labels, at.normalized().transpose()).row(0).normalized().transpose()); };
+  for (int k = 0; k < 30; ++k) {
+    const Vec3 a = s.unitOrthogonal(), b = s.cross(a);
+    const double h = 1e-5;
+    Eigen::Matrix<double, 3, 2> slope;
+    slope << (value(s + h * a) - value(s - h * a)) / (2 * h), (value(s + h * b) - value(s - h * b)) / (2 * h);
+    const Eigen::Vector2d step = slope.colPivHouseholderQr().solve(label - value(s));
+    s = (s + step[0] * a + step[1] * b).normalized();
+  }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("relabelling lowers the high degrees and leaves the surface where it was") {
+  Plans plans;
+  const Scene scene = twist_scene("off");
+  const Setting setting = make_setting(scene, plans);
+  const Coefficients x = twisted(setting, 20).vesicles[0].position;
+  const Relabelling r = relabel(plans, x, 24);
+  CHECK(r.high_after < 0.6 * r.high_before);
+  const Coefficients y = pulled_back(plans, r, x);
+  // Every point of the new surface lies on the old one, up to the truncation to degree p that r.lost reports.
+  const Basis& grid = plans.basis(12, 24);
+  const Matrix on_surface = sample_points(x, r.map);
+  CHECK((grid.synthesize(y).values - on_surface).rowwise().norm().maxCoeff() < 20 * r.lost + 1e-12);
+  const AreaVolume before = area_volume(plans.basis(12, 40), x), after = area_volume(plans.basis(12, 40), y);
+  CHECK(after.volume == Approx(before.volume).epsilon(10 * r.lost + 1e-12));
+}
+
+TEST_CASE("what is carried through a relabelling stays at its material point") {
+  Plans plans;
+  const Scene scene = twist_scene("off");
+  const Setting setting = make_setting(scene, plans);
+  const Coefficients x = twisted(setting, 20).vesicles[0].position;
+  const Relabelling r = relabel(plans, x, 24);
+  const Coefficients y = pulled_back(plans, r, x), labels = pulled_back(plans, r, fresh_labels(24));
+  const Matrix dots = tracer_directions(), carried = carried_points(plans, r, x, y, dots);
+  CHECK((sample_points(y, carried) - sample_points(x, dots)).rowwise().norm().maxCoeff() < 20 * r.lost + 1e-10);
+  // The same material points found through the label field.
+  for (int k = 0; k < dots.rows(); ++k) {
+    const Vec3 s = where_label_is(labels, dots.row(k).transpose(), carried.row(k).transpose());
+    CHECK((s - Vec3(carried.row(k).transpose())).norm() < 1e-3);  // truncation of the labels to degree 24
+  }
+}
+
+TEST_CASE("a labelled point followed with relabelling at every step and without ends at the same place") {
+  const auto dots_after = [](const char* mode, bool by_labels) {
+    Plans plans;
+    const Scene scene = twist_scene(mode);
+    const Setting s = make_setting(scene, plans);
+    const VesicleDynamics v = twisted(s).vesicles[0];
+    if (std::string(mode) == "always") REQUIRE(v.relabelled >= 5);
+    if (!by_labels) return Matrix(sample_points(v.position, v.tracers));
+    Matrix parameters = v.tracers;
+    const Matrix start = tracer_directions();
+    for (int k = 0; k < start.rows(); ++k)
+      parameters.row(k) = where_label_is(v.labels, start.row(k).transpose(), v.tracers.row(k).transpose()).transpose();
+    return Matrix(sample_points(v.position, parameters));
+  };
+  const Matrix grid = dots_after("off", false);
+  // Twelve relabellings, each truncated at p = 12: the bound is their sum; the points have moved by 0.4 meanwhile.
+  CHECK((dots_after("always", false) - grid).rowwise().norm().maxCoeff() < 5e-3);
+  CHECK((dots_after("always", true) - grid).rowwise().norm().maxCoeff() < 5e-3);
+}
+
+TEST_CASE("fresh labels are the sphere itself and count as resolved") {
+  const Coefficients labels = fresh_labels(24);
+  const Matrix dots = tracer_directions();
+  CHECK((sample_points(labels, dots) - dots).norm() < 1e-13);
+  CHECK_FALSE(labels_wound_up(labels));
+  CHECK(labels_wound_up(test::smooth_field(4, 4, 3, 1)));
+}
+
+TEST_CASE("the two ends of an interpolation are given in one parametrisation") {
+  Plans plans;
+  Scene scene = twist_scene("always");
+  const Setting s = make_setting(scene, plans);
+  Dynamics d = initial_dynamics(s);
+  mark_saved(d, evaluate(s, d));
+  d = test::advanced(s, d, 0.1, 5);
+  const State state = evaluate(s, d);
+  const VesicleState& v = state.vesicles[0];
+  REQUIRE(v.relabelled > 0);
+  // The same material point at the earlier time: x_before(s) must be where its label started, on the first surface.
+  const Coefficients first = initial_dynamics(s).vesicles[0].position;
+  const Matrix start = sample_points(first, tracer_directions());
+  CHECK((sample_points(v.position_before, v.tracers) - start).rowwise().norm().maxCoeff() < 5e-3);
+}
