@@ -59,7 +59,8 @@ constexpr OptionRow option_rows[] = {
        app.add_option("--steps", o.steps, "stop after so many steps; 0: the initial state only")
            ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
      }},
-    {"dry-run", [](CLI::App& app, Options& o) { app.add_flag("--dry-run", o.dry_run, "print the resolved scene, do nothing"); }},
+    {"dry-run",
+     [](CLI::App& app, Options& o) { app.add_flag("--dry-run", o.dry_run, "print the resolved scene, do nothing"); }},
     {"quiet", [](CLI::App& app, Options& o) { app.add_flag("-q,--quiet", o.quiet, "say nothing but errors"); }},
     {"resume", [](CLI::App& app, Options& o) { app.add_flag("--resume", o.resume, "continue a trajectory"); }},
     {"force", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace earlier results"); }},

@@ -45,7 +45,7 @@ int render(const Options& options) {
     if (report.movie) fmt::print("{}\n", (folder / "movie.mp4").string());
   }
   if (!report.remark.empty()) fmt::print(stderr, "tanktread: {}\n", report.remark);
-  return 0;
+  return report.movie_failed ? 1 : 0;
 }
 
 int figure(const Options& options) {

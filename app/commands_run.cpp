@@ -95,12 +95,13 @@ int run(const Options& options) {
   }
   say(options, fmt::format("{}: {} frames drawn, {} kept", (folder / "frames").string(), frames.drawn, frames.kept));
   if (frames.movie) say(options, (folder / "movie.mp4").string());
-  if (!frames.remark.empty()) fmt::print(stderr, "tanktread: {}; the frames are in '{}'\n", frames.remark, (folder / "frames").string());
+  if (!frames.remark.empty())
+    fmt::print(stderr, "tanktread: {}; the frames are in '{}'\n", frames.remark, (folder / "frames").string());
   for (const render::FigureParameters& figure : settings.figures) {
     const fs::path stem = folder / (figure.out.empty() ? figure.kind : figure.out);
     for (const fs::path& file : draw_figure({{reader, settings, {}}}, figure, stem)) say(options, file.string());
   }
-  return status;
+  return frames.movie_failed ? 1 : status;
 }
 
 int simulate(const Options& options) {

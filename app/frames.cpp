@@ -185,6 +185,16 @@ FrameReport render_frames(const sim::TrajectoryReader& trajectory, const Setting
       report.remark = missing.what();
     }
   }
+  const auto to_movie = [&](const auto& action) {
+    if (!encoder) return;
+    try {
+      action();
+    } catch (const std::exception& failure) {
+      report.remark = failure.what();
+      report.movie_failed = true;
+      encoder.reset();
+    }
+  };
   const auto plan = std::make_shared<const render::MeshPlan>();
   std::future<void> writing;  // one picture is compressed while the next is drawn
   Progress progress("rendering", options.quiet);
@@ -197,15 +207,16 @@ FrameReport render_frames(const sim::TrajectoryReader& trajectory, const Setting
     progress.show(static_cast<double>(i) / static_cast<double>(tasks.size()),
                   fmt::format("frame {} of {}", i + 1, tasks.size()));
     if (task.current) {
-      if (encoder) encoder->add(render::read_png(task.path).image);
+      to_movie([&] { encoder->add(render::read_png(task.path).image); });
       continue;
     }
     if (!renderer) renderer.emplace(render::parse_gl_choice(options.gl), options.shader_dir);
-    auto image = std::make_shared<render::Image>(draw(*renderer, production, state_at(trajectory, times[task.number]), plan));
-    if (encoder) encoder->add(*image);
+    const sim::State state = state_at(trajectory, times[task.number]);
+    auto image = std::make_shared<render::Image>(draw(*renderer, production, state, plan));
+    to_movie([&] { encoder->add(*image); });
     render::PngText text{{"Title", settings.scene.title},
                          {"Software", "tanktread " + version()},
-                         {"tanktread:time", fmt::format("{}", times[task.number])},
+                         {"tanktread:time", fmt::format("{:.12g}", times[task.number])},
                          {hash_key, task.hash}};
     for (const auto& entry : renderer->metadata()) text.push_back(entry);
     if (writing.valid()) writing.get();
@@ -215,10 +226,10 @@ FrameReport render_frames(const sim::TrajectoryReader& trajectory, const Setting
   if (writing.valid()) writing.get();
   if (report.interrupted) return report;
   if (options.shards == 1) remove_frames(frames, static_cast<std::int64_t>(times.size()));
-  if (encoder) {
+  to_movie([&] {
     encoder->finish();
     report.movie = true;
-  }
+  });
   return report;
 }
 

@@ -20,6 +20,7 @@ struct FrameReport {
   bool interrupted = false;
   bool movie = false;      ///< movie.mp4 is there
   std::string remark;      ///< why there is no movie
+  bool movie_failed = false;  ///< ... though there is an ffmpeg; the frames are complete all the same
 };
 
 /// Draws this shard's missing frames into folder/frames and, with one shard only, the movie into folder/movie.mp4.

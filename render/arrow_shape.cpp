@@ -1,7 +1,5 @@
 #include "arrow_shape.h"
 
-#include <Eigen/Dense>
-
 #include <cmath>
 #include <numbers>
 
@@ -12,19 +10,19 @@ ArrowShape arrow_shape() {
   // x = -tip is the point itself; exactly 0 would count as the tail
   constexpr float tip = 1e-3F;
   ArrowShape shape;
-  const auto put = [&](float x, float radius, float angle, const Eigen::Vector3f& n) {
-    for (const float v : {x, radius * std::cos(angle), radius * std::sin(angle)}) shape.position.push_back(v);
-    for (const float v : {n.x(), n.y(), n.z()}) shape.normal.push_back(v);
+  const auto put = [&](float x, float radius, float angle, const glm::vec3& n) {
+    shape.position.emplace_back(x, radius * std::cos(angle), radius * std::sin(angle));
+    shape.normal.push_back(n);
   };
   const float slope = std::atan2(head_radius, head_length);
   for (int k = 0; k < arrow_shape_sides; ++k) {
     const float step = 2 * std::numbers::pi_v<float> / arrow_shape_sides;
     const float a = step * static_cast<float>(k), b = step * static_cast<float>(k + 1), middle = (a + b) / 2;
-    const auto round = [](float f) { return Eigen::Vector3f(0, std::cos(f), std::sin(f)); };
+    const auto round = [](float f) { return glm::vec3(0, std::cos(f), std::sin(f)); };
     const auto cone = [&](float f) {
-      return Eigen::Vector3f(std::sin(slope), std::cos(slope) * std::cos(f), std::cos(slope) * std::sin(f));
+      return glm::vec3(std::sin(slope), std::cos(slope) * std::cos(f), std::cos(slope) * std::sin(f));
     };
-    const Eigen::Vector3f back(-1, 0, 0);
+    const glm::vec3 back(-1, 0, 0);
     // shaft
     put(0, 1, a, round(a)), put(-head_length, 1, a, round(a)), put(-head_length, 1, b, round(b));
     put(0, 1, a, round(a)), put(-head_length, 1, b, round(b)), put(0, 1, b, round(b));

@@ -1,6 +1,8 @@
 // The arrow of the flow field as triangles.
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include <vector>
 
 namespace render {
@@ -9,9 +11,9 @@ inline constexpr int arrow_shape_sides = 20;
 inline constexpr int arrow_shape_vertices = arrow_shape_sides * (6 + 3 + 3 + 3);
 
 /// An arrow along x whose shaft has radius 1. Vertices with x < 0 belong to the head and are measured back from the tip
-/// in shaft radii; the tail lies at x = 0. Three floats a vertex.
+/// in shaft radii; the tail lies at x = 0.
 struct ArrowShape {
-  std::vector<float> position, normal;
+  std::vector<glm::vec3> position, normal;
 };
 ArrowShape arrow_shape();
 

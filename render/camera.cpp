@@ -2,6 +2,8 @@
 
 #include "sim/basis.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -9,33 +11,32 @@
 namespace render {
 namespace {
 
-using sim::Vec3;
+using glm::dvec3;
 
 constexpr double tangent_of_half_angle = 0.18;  // vertical; a long lens: shapes are hardly distorted
 constexpr double fill_width = 0.86,
                  fill_height = 0.74;  // share of the picture that bodies may take; captions get the rest
 constexpr double strays = 1.5;        // follow = "auto": drift / extent above which the camera follows
 
-ViewAxes axes_from(const Vec3& back, const Vec3& up) {
-  const Vec3 b = back.normalized();
-  const Vec3 r = up.cross(b).normalized();
-  return {r, b.cross(r), b};
+ViewAxes axes_from(const dvec3& back, const dvec3& up) {
+  const dvec3 b = glm::normalize(back), r = glm::normalize(glm::cross(up, b));
+  return {r, glm::cross(b, r), b};
 }
 
 // Degrees to the right of and above the flow-gradient view.
 ViewAxes turned(double azimuth, double elevation) {
-  const double a = azimuth * std::numbers::pi / 180, e = elevation * std::numbers::pi / 180;
-  return axes_from({std::sin(a) * std::cos(e), -std::cos(a) * std::cos(e), std::sin(e)}, Vec3::UnitZ());
+  const double a = glm::radians(azimuth), e = glm::radians(elevation);
+  return axes_from({std::sin(a) * std::cos(e), -std::cos(a) * std::cos(e), std::sin(e)}, {0, 0, 1});
 }
 
 struct Extent {
-  Vec3 lower = Vec3::Constant(1e300), upper = Vec3::Constant(-1e300);  // right, up, back
-  void add(const Vec3& p) {
-    lower = lower.cwiseMin(p);
-    upper = upper.cwiseMax(p);
+  dvec3 lower{1e300}, upper{-1e300};  // right, up, back
+  void add(const dvec3& p) {
+    lower = glm::min(lower, p);
+    upper = glm::max(upper, p);
   }
-  Vec3 centre() const { return (lower + upper) / 2; }
-  Vec3 size() const { return upper - lower; }
+  dvec3 centre() const { return (lower + upper) / 2.0; }
+  dvec3 size() const { return upper - lower; }
 };
 
 }  // namespace
@@ -45,8 +46,8 @@ const std::vector<CameraRow>& cameras() {
       {"flow-gradient", "from -y: the flow to the right, its gradient up", turned(0, 0)},
       {"three-quarter", "flow-gradient, from a little to the left and above", turned(-22, 16)},
       {"flow-vorticity", "from above: the flow to the right, vorticity up the picture",
-       axes_from(Vec3::UnitZ(), Vec3::UnitY())},
-      {"gradient-vorticity", "against the flow: its gradient up", axes_from(Vec3::UnitX(), Vec3::UnitZ())},
+       axes_from({0, 0, 1}, {0, 1, 0})},
+      {"gradient-vorticity", "against the flow: its gradient up", axes_from({1, 0, 0}, {0, 0, 1})},
   };
   return rows;
 }
@@ -64,17 +65,16 @@ StateSummary summarize(const sim::State& state) {
   const sim::Vector phi = sim::Vector::LinSpaced(longitudes + 1, 0, 2 * std::numbers::pi).head(longitudes);
   StateSummary summary;
   const Eigen::Index each = latitudes * longitudes;
-  summary.points.resize(3, each * static_cast<Eigen::Index>(state.vesicles.size()));
+  summary.points.reserve(static_cast<std::size_t>(each) * state.vesicles.size());
   double area = 0;
-  Eigen::Index to = 0;
   for (const sim::VesicleState& vesicle : state.vesicles) {
     const sim::FirstDerivatives x = sim::sample_grid(vesicle.position, theta, phi);
     for (Eigen::Index i = 0; i < each; ++i) {
-      const Vec3 p = x.value.row(i), t = x.t.row(i), f = x.f.row(i);
-      const double weight = t.cross(f).norm();
+      const dvec3 p = to_glm(x.value.row(i));
+      const double weight = glm::length(glm::cross(to_glm(x.t.row(i)), to_glm(x.f.row(i))));
       summary.centroid += weight * p;
       area += weight;
-      summary.points.col(to++) = p.cast<float>();
+      summary.points.emplace_back(p);
     }
   }
   if (area > 0) summary.centroid /= area;
@@ -83,64 +83,61 @@ StateSummary summarize(const sim::State& state) {
 
 Framing frame_trajectory(std::span<const StateSummary> states, const ViewParameters& view) {
   StateSummary sphere;
-  sphere.points.resize(3, 6);
-  sphere.points << Eigen::Matrix3f::Identity(), -Eigen::Matrix3f::Identity();
+  sphere.points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   if (states.empty()) states = {&sphere, 1};
 
   Framing framing;
   framing.axes = find_camera(view.camera).axes;
   framing.perspective = view.projection != "orthographic";
   framing.aspect = static_cast<double>(view.size.at(0)) / view.size.at(1);
-  Eigen::Matrix3d to_axes;
-  to_axes << framing.axes.right.transpose(), framing.axes.up.transpose(), framing.axes.back.transpose();
+  const glm::dmat3 from_axes(framing.axes.right, framing.axes.up, framing.axes.back);
+  const glm::dmat3 to_axes = glm::transpose(from_axes);
 
   Extent centroids, about_centroid;
   double largest = 0;  // extent of one instant
   for (const StateSummary& state : states) {
-    const Vec3 centroid = to_axes * state.centroid;
+    const dvec3 centroid = to_axes * state.centroid;
     centroids.add(centroid);
     Extent now;
-    for (Eigen::Index i = 0; i < state.points.cols(); ++i) {
-      const Vec3 p = to_axes * state.points.col(i).cast<double>();
+    for (const dvec3 point : state.points) {
+      const dvec3 p = to_axes * point;
       now.add(p);
       about_centroid.add(p - centroid);
     }
-    if (state.points.cols() > 0) largest = std::max(largest, now.size().maxCoeff());
+    const dvec3 size = now.size();
+    largest = std::max({largest, size.x, size.y, size.z});
   }
-  framing.follows = view.follow == "always" || (view.follow == "auto" && centroids.size().norm() > strays * largest);
+  framing.follows = view.follow == "always" || (view.follow == "auto" && glm::length(centroids.size()) > strays * largest);
 
   Extent all = about_centroid;
   if (!framing.follows) {
     all = Extent{};
     for (const StateSummary& state : states)
-      for (Eigen::Index i = 0; i < state.points.cols(); ++i) all.add(to_axes * state.points.col(i).cast<double>());
+      for (const dvec3 point : state.points) all.add(to_axes * point);
   }
-  const Vec3 centre = to_axes.transpose() * all.centre();
+  const dvec3 centre = from_axes * all.centre();
   (framing.follows ? framing.offset : framing.target) = centre;
-  framing.depth = std::max(all.size().z() / 2, 1e-3);
+  framing.depth = std::max(all.size().z / 2, 1e-3);
 
   // The picture must hold every point; a nearer one looks larger.
   const double tx = tangent_of_half_angle * framing.aspect * fill_width, ty = tangent_of_half_angle * fill_height;
   double distance = 1e-3, half_height = 1e-3;
   for (const StateSummary& state : states)
-    for (Eigen::Index i = 0; i < state.points.cols(); ++i) {
-      const Vec3 origin = framing.follows ? Vec3(state.centroid + framing.offset) : framing.target;
-      const Vec3 p = to_axes * (state.points.col(i).cast<double>() - origin);
-      distance = std::max({distance, p.z() + std::abs(p.x()) / tx, p.z() + std::abs(p.y()) / ty});
+    for (const dvec3 point : state.points) {
+      const dvec3 origin = framing.follows ? state.centroid + framing.offset : framing.target;
+      const dvec3 p = to_axes * (point - origin);
+      distance = std::max({distance, p.z + std::abs(p.x) / tx, p.z + std::abs(p.y) / ty});
       half_height =
-          std::max({half_height, std::abs(p.y()) / fill_height, std::abs(p.x()) / (fill_width * framing.aspect)});
+          std::max({half_height, std::abs(p.y) / fill_height, std::abs(p.x) / (fill_width * framing.aspect)});
     }
   framing.distance = distance / view.zoom;
   framing.half_height = framing.perspective ? framing.distance * tangent_of_half_angle : half_height / view.zoom;
   return framing;
 }
 
-Camera make_camera(const Framing& framing, const Vec3& centroid) {
+Camera make_camera(const Framing& framing, const dvec3& centroid) {
   Camera camera;
-  camera.target = framing.follows ? Vec3(centroid + framing.offset) : framing.target;
-  camera.right = framing.axes.right;
-  camera.up = framing.axes.up;
-  camera.back = framing.axes.back;
+  camera.target = framing.follows ? centroid + framing.offset : framing.target;
   camera.half_height = framing.half_height;
   camera.half_width = framing.half_height * framing.aspect;
   camera.perspective = framing.perspective;
@@ -148,31 +145,16 @@ Camera make_camera(const Framing& framing, const Vec3& centroid) {
   const double reach = 4 * (framing.depth + framing.half_height * std::max(1.0, framing.aspect));
   const double distance = framing.perspective ? framing.distance : 2 * reach;
   const double near = std::max(distance - reach, 0.02 * distance), far = distance + reach;
-  Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
-  view.block<1, 3>(0, 0) = camera.right.transpose();
-  view.block<1, 3>(1, 0) = camera.up.transpose();
-  view.block<1, 3>(2, 0) = camera.back.transpose();
-  view.block<3, 1>(0, 3) = -view.block<3, 3>(0, 0) * camera.target - Vec3(0, 0, distance);
-  Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
-  if (framing.perspective) {
-    projection(0, 0) = distance / camera.half_width;
-    projection(1, 1) = distance / camera.half_height;
-    projection(2, 2) = -(far + near) / (far - near);
-    projection(2, 3) = -2 * far * near / (far - near);
-    projection(3, 2) = -1;
-  } else {
-    projection(0, 0) = 1 / camera.half_width;
-    projection(1, 1) = 1 / camera.half_height;
-    projection(2, 2) = -2 / (far - near);
-    projection(2, 3) = -(far + near) / (far - near);
-    projection(3, 3) = 1;
-  }
-  camera.view = view.cast<float>();
-  camera.projection = projection.cast<float>();
+  camera.view =
+      glm::lookAt(camera.target + distance * framing.axes.back, camera.target, framing.axes.up);
+  const double w = camera.half_width, h = camera.half_height;
+  const double share = near / distance;  // of the near plane's size in that of the target
+  camera.projection = framing.perspective ? glm::frustum(-w * share, w * share, -h * share, h * share, near, far)
+                                          : glm::ortho(-w, w, -h, h, near, far);
   return camera;
 }
 
-sim::Matrix arrow_points(const Framing& framing, const Vec3& centroid) {
+sim::Matrix arrow_points(const Framing& framing, const dvec3& centroid) {
   const Camera camera = make_camera(framing, centroid);
   // The plane lies just behind the bodies, where a perspective picture is wider.
   const double behind = framing.depth * 1.15 + 0.05 * framing.half_height;
@@ -180,10 +162,10 @@ sim::Matrix arrow_points(const Framing& framing, const Vec3& centroid) {
   const double height = 2 * camera.half_height * widen, width = 2 * camera.half_width * widen;
   const double step_y = height / 7.5, step_x = height / 4.2;
   // A following camera carries the window over a net at rest.
-  const double shift_x = framing.follows ? camera.target.dot(camera.right) : 0;
-  const double shift_y = framing.follows ? camera.target.dot(camera.up) : 0;
+  const double shift_x = framing.follows ? glm::dot(camera.target, framing.axes.right) : 0;
+  const double shift_y = framing.follows ? glm::dot(camera.target, framing.axes.up) : 0;
   const auto first = [](double low, double step, double phase) { return std::ceil(low / step - phase); };
-  std::vector<Vec3> points;
+  std::vector<dvec3> points;
   const double phase_x = framing.follows ? 0 : (std::lround(width / step_x) % 2 == 0 ? 0.5 : 0.0);
   // Passing arrows enter from outside the picture, and shrink where captions are (see draw_arrows).
   const double reach_x = framing.follows ? 0.60 * width : 0.47 * width,
@@ -193,10 +175,11 @@ sim::Matrix arrow_points(const Framing& framing, const Vec3& centroid) {
       const double x = (i + phase_x) * step_x - shift_x, y = j * step_y - shift_y;
       const bool under_text = x < -0.24 * width && (y > 0.30 * height || y < -0.36 * height);
       if (under_text && !framing.follows) continue;
-      points.push_back(camera.target + x * camera.right + y * camera.up - behind * camera.back);
+      points.push_back(camera.target + x * framing.axes.right + y * framing.axes.up - behind * framing.axes.back);
     }
   sim::Matrix result(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t k = 0; k < points.size(); ++k) result.row(static_cast<Eigen::Index>(k)) = points[k].transpose();
+  for (std::size_t k = 0; k < points.size(); ++k) 
+    result.row(static_cast<Eigen::Index>(k)) = to_sim(points[k]).transpose();
   return result;
 }
 

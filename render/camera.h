@@ -2,11 +2,10 @@
 #pragma once
 
 #include "parameters.h"
+#include "vectors.h"
 
 #include "sim/catalogue.h"
 #include "sim/types.h"
-
-#include <Eigen/Geometry>
 
 #include <span>
 #include <vector>
@@ -15,7 +14,7 @@ namespace render {
 
 /// Axes of the picture in the scene: right, up, and toward the viewer; a right-handed orthonormal frame.
 struct ViewAxes {
-  sim::Vec3 right, up, back;
+  glm::dvec3 right, up, back;
 };
 
 struct CameraRow {
@@ -30,17 +29,17 @@ const CameraRow& find_camera(std::string_view name);
 
 /// What framing needs to know of one state: a coarse net of points on every membrane, and their mean.
 struct StateSummary {
-  sim::Vec3 centroid = sim::Vec3::Zero();  ///< of the area of all vesicles
-  Eigen::Matrix3Xf points;                 ///< 3 x points
+  glm::dvec3 centroid{0};  ///< of the area of all vesicles
+  std::vector<glm::vec3> points;
 };
 StateSummary summarize(const sim::State& state);
 
 /// One framing serves a whole movie, so nothing jumps or breathes.
 struct Framing {
   ViewAxes axes;
-  bool follows = false;                  ///< target = centroid of the frame's own state
-  sim::Vec3 target = sim::Vec3::Zero();  ///< of a fixed framing
-  sim::Vec3 offset = sim::Vec3::Zero();  ///< of a following one: target - centroid
+  bool follows = false;  ///< target = centroid of the frame's own state
+  glm::dvec3 target{0};  ///< of a fixed framing
+  glm::dvec3 offset{0};  ///< of a following one: target - centroid
   bool perspective = true;
   double distance = 10;      ///< from the eye to the target, when perspective
   double half_height = 1;    ///< of the picture in the plane of the target, length
@@ -55,17 +54,17 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
 
 /// The matrices of one frame.
 struct Camera {
-  Eigen::Matrix4f view;        ///< scene -> eye: x right, y up, z toward the viewer
-  Eigen::Matrix4f projection;  ///< eye -> clip
-  sim::Vec3 target, right, up, back;
+  glm::mat4 view{1};        ///< scene -> eye: x right, y up, z toward the viewer
+  glm::mat4 projection{1};  ///< eye -> clip
+  glm::dvec3 target{0};     ///< in the middle of the picture
   double half_width = 1, half_height = 1;  ///< of the picture in the plane of the target
   bool perspective = true;
 };
 /// centroid: of the frame's own state; a fixed framing ignores it.
-Camera make_camera(const Framing& framing, const sim::Vec3& centroid);
+Camera make_camera(const Framing& framing, const glm::dvec3& centroid);
 
 /// Points where flow arrows start: a regular net in the picture, in a plane behind everything, clear of the captions.
 /// count x 3. The net is fixed in space under a following camera, so that arrows pass by.
-sim::Matrix arrow_points(const Framing& framing, const sim::Vec3& centroid);
+sim::Matrix arrow_points(const Framing& framing, const glm::dvec3& centroid);
 
 }  // namespace render

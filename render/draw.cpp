@@ -15,11 +15,11 @@ constexpr double tracer_radius = 0.088;                          // area radii
 constexpr double longest_arrow = 0.21, arrow_thickness = 0.009;  // half heights of the picture
 constexpr double weakest_arrow = 0.06;                           // of the longest; shorter ones are left out
 
-Eigen::Vector3f vector_of(const Colour& c) { return Eigen::Vector3d(c.r, c.g, c.b).cast<float>(); }
+glm::vec3 vector_of(const Colour& c) { return {c.r, c.g, c.b}; }
 
-Eigen::Vector3f linear(const Colour& c) {
+glm::vec3 linear(const Colour& c) {
   const auto decode = [](double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); };
-  return Eigen::Vector3d(decode(c.r), decode(c.g), decode(c.b)).cast<float>();
+  return {decode(c.r), decode(c.g), decode(c.b)};
 }
 
 // px at a height of 1080 in samples of this picture, at least `least` px wide however small it is.
@@ -29,9 +29,9 @@ float samples(const ViewParameters& view, double px, double least) {
 
 // 0 under the captions, 1 elsewhere, smooth between: a passing arrow shrinks away instead of vanishing at once.
 // place: scene coordinates.
-double clear_of_captions(const Camera& camera, const Eigen::Vector3f& place) {
-  const Eigen::Vector4f clip = camera.projection * (camera.view * place.homogeneous());
-  const double x = clip.x() / clip.w(), y = clip.y() / clip.w();  // -1..1
+double clear_of_captions(const Camera& camera, const glm::vec3& place) {
+  const glm::vec4 clip = camera.projection * (camera.view * glm::vec4(place, 1));
+  const double x = clip.x / clip.w, y = clip.y / clip.w;  // -1..1
   constexpr double ramp = 0.12;
   const double outside = std::max((x + 0.60) / ramp, std::min((0.72 - y) / ramp, (y + 0.78) / 0.06));
   const double t = std::clamp(outside, 0.0, 1.0);
@@ -59,8 +59,8 @@ Renderer::Renderer(const GlChoice& choice, std::filesystem::path shader_dir)
       bodies_(context_.gl()),
       arrows_(context_.gl()) {
   const ArrowShape shape = arrow_shape();
-  arrows_.attribute(0, 3, shape.position);
-  arrows_.attribute(1, 3, shape.normal);
+  arrows_.attribute(0, shape.position);
+  arrows_.attribute(1, shape.normal);
 }
 
 // Programs and buffers are about to be freed, and must be freed in their own context.
@@ -129,17 +129,15 @@ void Renderer::draw_arrows(const Frame& frame) {
   double fastest = flow.reference_speed;
   if (fastest <= 0) fastest = flow.velocities.rowwise().norm().maxCoeff();
   if (!(fastest > 0) || !std::isfinite(fastest)) return;
-  std::vector<float> starts, vectors;
+  std::vector<glm::vec3> starts, vectors;
   for (Eigen::Index i = 0; i < flow.points.rows(); ++i) {
-    const sim::Vec3 v = flow.velocities.row(i) / fastest;
-    if (!(v.norm() >= weakest_arrow)) continue;
-    const Eigen::Vector3f start = flow.points.row(i).transpose().cast<float>();
+    const glm::dvec3 v = to_glm(flow.velocities.row(i)) / fastest;
+    if (!(glm::length(v) >= weakest_arrow)) continue;
+    const glm::vec3 start = to_glm(flow.points.row(i));
     const double size = longest_arrow * frame.camera.half_height * clear_of_captions(frame.camera, start);
     if (size <= 0) continue;
-    for (int c = 0; c < 3; ++c) {
-      starts.push_back(start[c]);
-      vectors.push_back(static_cast<float>(v[c] * size));
-    }
+    starts.push_back(start);
+    vectors.emplace_back(v * size);
   }
   if (starts.empty()) return;
   const Gl& gl = context_.gl();
@@ -148,9 +146,9 @@ void Renderer::draw_arrows(const Frame& frame) {
   set_camera(p, frame.camera);
   p.set("u_colour", linear(arrow_colour));
   p.set("u_thickness", static_cast<float>(arrow_thickness * frame.camera.half_height));
-  arrows_.attribute(2, 3, starts, 1);
-  arrows_.attribute(3, 3, vectors, 1);
-  gl.DrawArraysInstanced(GL_TRIANGLES, 0, arrow_shape_vertices, static_cast<GLsizei>(starts.size() / 3));
+  arrows_.attribute(2, starts, 1);
+  arrows_.attribute(3, vectors, 1);
+  gl.DrawArraysInstanced(GL_TRIANGLES, 0, arrow_shape_vertices, static_cast<GLsizei>(starts.size()));
 }
 
 void Renderer::draw_body(const Frame& frame, const Body& body) {
@@ -160,28 +158,23 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
   const Program& p = program("body", body_defines(style, frame.view, tracers.size()));
   p.use();
   set_camera(p, frame.camera);
-  const Eigen::Vector3f colour = linear(style.own_colour ? body.colour : white);
+  const glm::vec3 colour = linear(style.own_colour ? body.colour : white);
   p.set("u_colour", colour);
-  p.set("u_line_colour", Eigen::Vector3f(0.10F * colour + Eigen::Vector3f(0.012F, 0.015F, 0.022F)));
+  p.set("u_line_colour", 0.10F * colour + glm::vec3(0.012F, 0.015F, 0.022F));
   p.set("u_half_width", samples(frame.view, frame.view.line_width / 2, 0.42));
   if (style.tracers && frame.view.tracers && !tracers.empty()) {
-    std::vector<Eigen::Vector4f> places;
-    for (const Mesh::Tracer& t : tracers) {
-      const Eigen::Vector4f place(static_cast<float>(t.position.x()), static_cast<float>(t.position.y()),
-                                  static_cast<float>(t.position.z()), 1);
-      Eigen::Vector4f eye = frame.camera.view * place;
-      eye.w() = t.bright ? 1.0F : 0.0F;
-      places.push_back(eye);
-    }
+    std::vector<glm::vec4> places;
+    for (const Mesh::Tracer& t : tracers)
+      places.emplace_back(glm::vec3(frame.camera.view * glm::vec4(t.position, 1)), t.bright ? 1.0F : 0.0F);
     p.set("u_tracer", places);
     p.set("u_tracer_bright", linear(tracer_bright));
     p.set("u_tracer_dark", linear(tracer_dark));
-    bodies_.attribute(3, 2, nearest_tracers(body.mesh));
+    bodies_.attribute(3, nearest_tracers(body.mesh));
     p.set("u_tracer_radius", static_cast<float>(tracer_radius * body.mesh.area_radius));
   }
-  bodies_.attribute(0, 3, body.mesh.position);
-  bodies_.attribute(1, 3, body.mesh.normal);
-  bodies_.attribute(2, 3, frame.view.lines == "grid" ? body.mesh.plan->parameters() : body.mesh.label);
+  bodies_.attribute(0, body.mesh.position);
+  bodies_.attribute(1, body.mesh.normal);
+  bodies_.attribute(2, frame.view.lines == "grid" ? body.mesh.plan->parameters() : body.mesh.label);
   if (uploaded_plan_ != body.mesh.plan) {
     bodies_.indices(body.mesh.plan->indices());
     uploaded_plan_ = body.mesh.plan;
@@ -197,7 +190,7 @@ void Renderer::draw_outline(const Frame& frame, const Body& body) {
   p.use();
   set_camera(p, frame.camera);
   const float width = samples(frame.view, frame.view.outline_width, 1.0);
-  p.set("u_push", Eigen::Vector2f(2 * width / static_cast<float>(framebuffer_->width()),
+  p.set("u_push", glm::vec2(2 * width / static_cast<float>(framebuffer_->width()),
                                   2 * width / static_cast<float>(framebuffer_->height())));
   const Colour dark{0.10 + 0.08 * body.colour.r, 0.11 + 0.08 * body.colour.g, 0.14 + 0.08 * body.colour.b};
   p.set("u_colour", vector_of(dark));

@@ -1,5 +1,7 @@
 #include "gpu.h"
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include <stdexcept>
 #include <vector>
 
@@ -52,20 +54,18 @@ Program::~Program() { gl_->DeleteProgram(id_); }
 void Program::use() const { gl_->UseProgram(id_); }
 void Program::set(const char* name, float v) const { gl_->Uniform1f(gl_->GetUniformLocation(id_, name), v); }
 void Program::set(const char* name, int v) const { gl_->Uniform1i(gl_->GetUniformLocation(id_, name), v); }
-void Program::set(const char* name, const Eigen::Vector2f& v) const {
-  gl_->Uniform2fv(gl_->GetUniformLocation(id_, name), 1, v.data());
+void Program::set(const char* name, const glm::vec2& v) const {
+  gl_->Uniform2fv(gl_->GetUniformLocation(id_, name), 1, glm::value_ptr(v));
 }
-void Program::set(const char* name, const Eigen::Vector3f& v) const {
-  gl_->Uniform3fv(gl_->GetUniformLocation(id_, name), 1, v.data());
+void Program::set(const char* name, const glm::vec3& v) const {
+  gl_->Uniform3fv(gl_->GetUniformLocation(id_, name), 1, glm::value_ptr(v));
 }
-void Program::set(const char* name, const Eigen::Matrix4f& v) const {
-  gl_->UniformMatrix4fv(gl_->GetUniformLocation(id_, name), 1, GL_FALSE, v.data());
+void Program::set(const char* name, const glm::mat4& v) const {
+  gl_->UniformMatrix4fv(gl_->GetUniformLocation(id_, name), 1, GL_FALSE, glm::value_ptr(v));
 }
-void Program::set(const char* name, std::span<const Eigen::Vector3f> v) const {
-  if (!v.empty()) gl_->Uniform3fv(gl_->GetUniformLocation(id_, name), static_cast<GLsizei>(v.size()), v[0].data());
-}
-void Program::set(const char* name, std::span<const Eigen::Vector4f> v) const {
-  if (!v.empty()) gl_->Uniform4fv(gl_->GetUniformLocation(id_, name), static_cast<GLsizei>(v.size()), v[0].data());
+void Program::set(const char* name, std::span<const glm::vec4> v) const {
+  if (v.empty()) return;
+  gl_->Uniform4fv(gl_->GetUniformLocation(id_, name), static_cast<GLsizei>(v.size()), glm::value_ptr(v[0]));
 }
 
 VertexArray::VertexArray(const Gl& gl) : gl_(&gl) {
@@ -82,7 +82,17 @@ VertexArray::~VertexArray() {
 
 void VertexArray::bind() const { gl_->BindVertexArray(id_); }
 
-void VertexArray::attribute(GLuint location, int components, std::span<const float> data, GLuint divisor) {
+void VertexArray::attribute(GLuint location, std::span<const glm::vec2> data, GLuint divisor) {
+  upload(location, 2, std::as_bytes(data), divisor);
+}
+void VertexArray::attribute(GLuint location, std::span<const glm::vec3> data, GLuint divisor) {
+  upload(location, 3, std::as_bytes(data), divisor);
+}
+void VertexArray::attribute(GLuint location, std::span<const glm::vec4> data, GLuint divisor) {
+  upload(location, 4, std::as_bytes(data), divisor);
+}
+
+void VertexArray::upload(GLuint location, int components, std::span<const std::byte> data, GLuint divisor) {
   bind();
   gl_->BindBuffer(GL_ARRAY_BUFFER, buffers_.at(location));
   gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(data.size_bytes()), data.data(), GL_STREAM_DRAW);

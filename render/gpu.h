@@ -5,7 +5,7 @@
 #include "gl.h"
 #include "image.h"
 
-#include <Eigen/Dense>
+#include <glm/glm.hpp>
 
 #include <array>
 #include <span>
@@ -27,11 +27,10 @@ class Program {
   // Uniforms of the program in use; names the shader does not have are ignored, since variants drop some.
   void set(const char* name, float v) const;
   void set(const char* name, int v) const;
-  void set(const char* name, const Eigen::Vector2f& v) const;
-  void set(const char* name, const Eigen::Vector3f& v) const;
-  void set(const char* name, const Eigen::Matrix4f& v) const;
-  void set(const char* name, std::span<const Eigen::Vector3f> v) const;
-  void set(const char* name, std::span<const Eigen::Vector4f> v) const;
+  void set(const char* name, const glm::vec2& v) const;
+  void set(const char* name, const glm::vec3& v) const;
+  void set(const char* name, const glm::mat4& v) const;
+  void set(const char* name, std::span<const glm::vec4> v) const;
 
  private:
   const Gl* gl_;
@@ -46,11 +45,14 @@ class VertexArray {
   VertexArray(const VertexArray&) = delete;
 
   void bind() const;
-  /// Attribute `location` takes `components` floats a vertex from `data`; divisor 1: a value an instance.
-  void attribute(GLuint location, int components, std::span<const float> data, GLuint divisor = 0);
+  /// Attribute `location` takes one element of `data` a vertex; divisor 1: one an instance.
+  void attribute(GLuint location, std::span<const glm::vec2> data, GLuint divisor = 0);
+  void attribute(GLuint location, std::span<const glm::vec3> data, GLuint divisor = 0);
+  void attribute(GLuint location, std::span<const glm::vec4> data, GLuint divisor = 0);
   void indices(std::span<const std::uint32_t> data);
 
  private:
+  void upload(GLuint location, int components, std::span<const std::byte> data, GLuint divisor);
   static constexpr std::size_t attributes = 4;
   const Gl* gl_;
   GLuint id_ = 0, index_buffer_ = 0;

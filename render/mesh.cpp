@@ -12,23 +12,15 @@
 namespace render {
 namespace {
 
-using sim::Matrix;
-using sim::Vec3;
-
-void put(std::vector<float>& array, std::size_t vertex, const Vec3& v) {
-  for (int c = 0; c < 3; ++c) array[3 * vertex + static_cast<std::size_t>(c)] = static_cast<float>(v[c]);
-}
-
 // A zero label cannot be normalised; it can only come from a damaged file, and draws as the pole.
-Vec3 unit(const Vec3& v) {
-  const double length = v.norm();
-  return length > 0 ? Vec3(v / length) : Vec3(Vec3::UnitZ());
+glm::dvec3 unit(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? v / length : glm::dvec3(0, 0, 1);
 }
 
 // phi = 0 and pi/2 are columns 0 and longitudes/4: the tangents of a pole.
-Vec3 pole_normal(const sim::FirstDerivatives& x, Eigen::Index row0, Eigen::Index row90, double side) {
-  const Vec3 a = x.t.row(row0), b = x.t.row(row90);
-  return unit(side * a.cross(b));
+glm::dvec3 pole_normal(const sim::FirstDerivatives& x, Eigen::Index row0, Eigen::Index row90, double side) {
+  return unit(side * glm::cross(to_glm(x.t.row(row0)), to_glm(x.t.row(row90))));
 }
 
 }  // namespace
@@ -47,14 +39,15 @@ MeshPlan::MeshPlan(int latitudes, int longitudes) : latitudes_(latitudes), longi
       indices_.insert(indices_.end(), {here + i, here + i + 1, next + i + 1, here + i, next + i + 1, next + i});
     indices_.insert(indices_.end(), {south, next + rings - 1, here + rings - 1});
   }
-  parameters_.resize(3 * static_cast<std::size_t>(vertices()));
+  parameters_.resize(static_cast<std::size_t>(vertices()));
   for (std::uint32_t j = 0; j < columns; ++j)
     for (std::uint32_t i = 0; i < rings; ++i) {
       const double t = theta_[i + 1], f = phi_[j];
-      put(parameters_, j * rings + i, {std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)});
+      parameters_[j * rings + i] =
+          glm::dvec3(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t));
     }
-  put(parameters_, north, Vec3::UnitZ());
-  put(parameters_, south, -Vec3::UnitZ());
+  parameters_[north] = {0, 0, 1};
+  parameters_[south] = {0, 0, -1};
 }
 
 Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& state, const sim::Coefficients* scalar) {
@@ -63,9 +56,9 @@ Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& st
   const auto count = static_cast<std::size_t>(plan->vertices());
   const std::size_t north = count - 2, south = count - 1;
   Mesh mesh;
-  mesh.position.resize(3 * count);
-  mesh.normal.resize(3 * count);
-  mesh.label.resize(3 * count);
+  mesh.position.resize(count);
+  mesh.normal.resize(count);
+  mesh.label.resize(count);
 
   const sim::FirstDerivatives x = sim::sample_grid(state.position, plan->theta(), plan->phi());
   const sim::FirstDerivatives s = sim::sample_grid(state.labels, plan->theta(), plan->phi());
@@ -74,22 +67,21 @@ Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& st
     for (Eigen::Index i = 0; i < rings; ++i) {
       const Eigen::Index from = j * rows + i + 1;
       const auto to = static_cast<std::size_t>(j * rings + i);
-      const Vec3 a = x.t.row(from), b = x.f.row(from);
-      put(mesh.position, to, x.value.row(from));
-      const Vec3 n = a.cross(b);
-      area += n.norm();
-      put(mesh.normal, to, unit(n));
-      put(mesh.label, to, unit(s.value.row(from)));
+      const glm::dvec3 n = glm::cross(to_glm(x.t.row(from)), to_glm(x.f.row(from)));
+      area += glm::length(n);
+      mesh.position[to] = to_glm(x.value.row(from));
+      mesh.normal[to] = unit(n);
+      mesh.label[to] = unit(to_glm(s.value.row(from)));
     }
   area *= std::numbers::pi / plan->latitudes() * 2 * std::numbers::pi / plan->longitudes();
   mesh.area_radius = std::sqrt(area / (4 * std::numbers::pi));
   const Eigen::Index quarter = columns / 4 * rows;
-  put(mesh.position, north, x.value.row(0));
-  put(mesh.position, south, x.value.row(rows - 1));
-  put(mesh.normal, north, pole_normal(x, 0, quarter, 1));
-  put(mesh.normal, south, pole_normal(x, rows - 1, quarter + rows - 1, -1));
-  put(mesh.label, north, unit(s.value.row(0)));
-  put(mesh.label, south, unit(s.value.row(rows - 1)));
+  mesh.position[north] = to_glm(x.value.row(0));
+  mesh.position[south] = to_glm(x.value.row(rows - 1));
+  mesh.normal[north] = pole_normal(x, 0, quarter, 1);
+  mesh.normal[south] = pole_normal(x, rows - 1, quarter + rows - 1, -1);
+  mesh.label[north] = unit(to_glm(s.value.row(0)));
+  mesh.label[south] = unit(to_glm(s.value.row(rows - 1)));
 
   if (scalar) {
     const sim::FirstDerivatives f = sim::sample_grid(*scalar, plan->theta(), plan->phi());
@@ -103,34 +95,28 @@ Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& st
   if (state.tracers.rows() > 0) {
     const SurfacePoints dots = surface_points(state.position, state.tracers);
     for (Eigen::Index k = 0; k < state.tracers.rows(); ++k)
-      mesh.tracers.push_back({dots.position.row(k), dots.normal.row(k), tracer_is_bright(static_cast<int>(k))});
+      mesh.tracers.push_back({to_glm(dots.position.row(k)), to_glm(dots.normal.row(k)), tracer_is_bright(static_cast<int>(k))});
   }
   mesh.plan = std::move(plan);
   return mesh;
 }
 
-std::vector<float> nearest_tracers(const Mesh& mesh) {
-  const std::size_t vertices = mesh.position.size() / 3;
-  std::vector<float> nearest(2 * vertices, -1);
-  std::vector<Eigen::Vector3f> places, normals;
-  for (const Mesh::Tracer& t : mesh.tracers) {
-    places.push_back(t.position.cast<float>());
-    normals.push_back(t.normal.cast<float>());
-  }
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const Eigen::Map<const Eigen::Vector3f> x(&mesh.position[3 * v]), n(&mesh.normal[3 * v]);
+std::vector<glm::vec2> nearest_tracers(const Mesh& mesh) {
+  std::vector<glm::vec2> nearest(mesh.position.size(), glm::vec2(-1));
+  for (std::size_t v = 0; v < mesh.position.size(); ++v) {
     float first = std::numeric_limits<float>::infinity(), second = first;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const float d = (x - places[k]).squaredNorm();
-      if (d >= second || n.dot(normals[k]) < 0.2F) continue;  // the far side of a thin disc is near as well
+    for (std::size_t k = 0; k < mesh.tracers.size(); ++k) {
+      const Mesh::Tracer& dot = mesh.tracers[k];
+      const glm::vec3 away = mesh.position[v] - dot.position;
+      const float d = glm::dot(away, away);
+      if (d >= second || glm::dot(mesh.normal[v], dot.normal) < 0.2F) continue;  // the far side of a thin disc is near as well
       if (d < first) {
         second = first;
-        nearest[2 * v + 1] = nearest[2 * v];
         first = d;
-        nearest[2 * v] = static_cast<float>(k);
+        nearest[v] = {static_cast<float>(k), nearest[v].x};
       } else {
         second = d;
-        nearest[2 * v + 1] = static_cast<float>(k);
+        nearest[v].y = static_cast<float>(k);
       }
     }
   }

@@ -2,6 +2,8 @@
 // longitudes.
 #pragma once
 
+#include "vectors.h"
+
 #include "sim/types.h"
 
 #include <cstdint>
@@ -23,8 +25,8 @@ class MeshPlan {
   /// Vertices grid first, latitude running fastest, then the poles theta = 0 and theta = pi.
   const sim::Vector& theta() const { return theta_; }  ///< with both poles: latitudes + 1
   const sim::Vector& phi() const { return phi_; }
-  /// The parameter s of every vertex: vertices x 3 unit vectors.
-  const std::vector<float>& parameters() const { return parameters_; }
+  /// The parameter s of every vertex, a unit vector.
+  const std::vector<glm::vec3>& parameters() const { return parameters_; }
   int latitudes() const { return latitudes_; }
   int longitudes() const { return longitudes_; }
 
@@ -32,19 +34,19 @@ class MeshPlan {
   int latitudes_, longitudes_;
   sim::Vector theta_, phi_;
   std::vector<std::uint32_t> indices_;
-  std::vector<float> parameters_;
+  std::vector<glm::vec3> parameters_;
 };
 
-/// Three floats a vertex for every array but scalar, which has one (or is empty).
+/// One element a vertex in every array; scalar may be empty.
 struct Mesh {
   std::shared_ptr<const MeshPlan> plan;
-  std::vector<float> position;
-  std::vector<float> normal;  ///< outward unit vectors
-  std::vector<float> label;   ///< material label, unit vectors
-  std::vector<float> scalar;  ///< one value a vertex, for fields
-  double area_radius = 0;     ///< of the sphere of the same area
+  std::vector<glm::vec3> position;
+  std::vector<glm::vec3> normal;  ///< outward unit vectors
+  std::vector<glm::vec3> label;   ///< material label, unit vectors
+  std::vector<float> scalar;      ///< for fields
+  double area_radius = 0;         ///< of the sphere of the same area
   struct Tracer {
-    sim::Vec3 position, normal;
+    glm::vec3 position, normal;
     bool bright;  ///< x + y + z of its initial direction > 0
   };
   std::vector<Tracer> tracers;
@@ -54,9 +56,8 @@ struct Mesh {
 Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& state,
                const sim::Coefficients* scalar = nullptr);
 
-/// For each vertex the indices of the two nearest tracers on its side of the membrane, -1 where there is none: 2 a
-/// vertex.
-std::vector<float> nearest_tracers(const Mesh& mesh);
+/// For each vertex the indices of the two nearest tracers on its side of the membrane, -1 where there is none.
+std::vector<glm::vec2> nearest_tracers(const Mesh& mesh);
 
 /// Initial direction of tracer k: the axes +x -x +y -y +z -z, then the corners of the cube; only x + y + z > 0 is used
 /// here.

@@ -23,8 +23,8 @@ Matrix net_directions(const MeshPlan& plan) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7391, Vec3(0.31, 0.77, -0.56).normalized()).toRotationMatrix();
   Matrix s(plan.vertices(), 3);
   for (Eigen::Index i = 0; i < s.rows(); ++i) {
-    const float* p = &plan.parameters()[3 * static_cast<std::size_t>(i)];
-    s.row(i) = (turn * Vec3(p[0], p[1], p[2]).normalized()).transpose();
+    const Vec3 p = to_sim(plan.parameters()[static_cast<std::size_t>(i)]);
+    s.row(i) = (turn * p.normalized()).transpose();
   }
   return s;
 }

@@ -63,10 +63,10 @@ Basis::Plan::Plan(int order, int grid_order)
   for (int m = 0; m <= p; ++m) {
     const int first = legendre_index(p, m, m), count = p - m + 1;
     Matrix s(3 * nlat, count);
-    s.topRows(nlat) = table.value.middleRows(first, count).transpose();
-    s.middleRows(nlat, nlat) = table.d1.middleRows(first, count).transpose();
-    s.bottomRows(nlat) = table.d2.middleRows(first, count).transpose();
-    analysis.push_back(table.value.middleRows(first, count) * rule.weight.asDiagonal());
+    s.topRows(nlat) = table.value.middleCols(first, count);
+    s.middleRows(nlat, nlat) = table.d1.middleCols(first, count);
+    s.bottomRows(nlat) = table.d2.middleCols(first, count);
+    analysis.push_back(table.value.middleCols(first, count).transpose() * rule.weight.asDiagonal());
     synthesis.push_back(std::move(s));
   }
   if (dense()) {
@@ -274,8 +274,8 @@ FirstDerivatives sample_grid(const Coefficients& c, const Vector& theta, const V
       const int a = std::abs(m), first = legendre_index(p, a, a), count = p - a + 1;
       Vector column(count);
       for (int n = a; n <= p; ++n) column[n - a] = c.values(coefficient_index(n, m), f);
-      value.col(p + m).noalias() = table.value.middleRows(first, count).transpose() * column;
-      slope.col(p + m).noalias() = table.d1.middleRows(first, count).transpose() * column;
+      value.col(p + m).noalias() = table.value.middleCols(first, count) * column;
+      slope.col(p + m).noalias() = table.d1.middleCols(first, count) * column;
     }
     Eigen::Map<Matrix>(d.value.col(f).data(), nlat, nlon).noalias() = value * fourier;
     Eigen::Map<Matrix>(d.t.col(f).data(), nlat, nlon).noalias() = slope * fourier;
@@ -299,20 +299,22 @@ BasisFunctions basis_functions(int p, const Matrix& directions, bool derivatives
   BasisFunctions b;
   for (Matrix* m : {&b.value, &b.t, &b.f})
     if (m == &b.value || derivatives) m->resize(count, coefficient_count(p));
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double phi = std::atan2(directions(k, 1), directions(k, 0));
-    for (int m = 0; m <= p; ++m) {
-      const double co = longitude_norm(m) * std::cos(m * phi), si = longitude_norm(m) * std::sin(m * phi);
-      for (int n = m; n <= p; ++n) {
-        const int row = legendre_index(p, n, m), c = coefficient_index(n, m), s = coefficient_index(n, -m);
-        b.value(k, s) = si * table.value(row, k);
-        b.value(k, c) = co * table.value(row, k);
-        if (!derivatives) continue;
-        b.t(k, s) = si * table.d1(row, k);
-        b.t(k, c) = co * table.d1(row, k);
-        b.f(k, s) = m * co * table.value(row, k);
-        b.f(k, c) = -m * si * table.value(row, k);
-      }
+  Eigen::ArrayXd phi(count);
+  for (Eigen::Index k = 0; k < count; ++k) phi[k] = std::atan2(directions(k, 1), directions(k, 0));
+  for (int m = 0; m <= p; ++m) {
+    const Eigen::ArrayXd co = longitude_norm(m) * (m * phi).cos(), si = longitude_norm(m) * (m * phi).sin();
+    for (int n = m; n <= p; ++n) {
+      const int column = legendre_index(p, n, m), c = coefficient_index(n, m), s = coefficient_index(n, -m);
+      const auto value = table.value.col(column).array();
+      b.value.col(c) = co * value;
+      if (m > 0) b.value.col(s) = si * value;
+      if (!derivatives) continue;
+      const auto slope = table.d1.col(column).array();
+      b.t.col(c) = co * slope;
+      b.f.col(c) = -m * si * value;
+      if (m == 0) continue;
+      b.t.col(s) = si * slope;
+      b.f.col(s) = m * co * value;
     }
   }
   return b;

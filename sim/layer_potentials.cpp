@@ -84,10 +84,10 @@ FoldedGrid::FoldedGrid(int degree, int grid_order)
       std::vector<double> analysis(std::size_t(count) * half), synth(std::size_t(2 * half) * count);
       for (int k = 0; k < count; ++k)
         for (int i = 0; i < half; ++i) {
-          const int row = legendre_index(p, m + parity + 2 * k, m);
-          analysis[std::size_t(k) * half + i] = table.value(row, i);
-          synth[std::size_t(i) * count + k] = table.value(row, i);
-          synth[std::size_t(half + i) * count + k] = table.d1(row, i);
+          const int column = legendre_index(p, m + parity + 2 * k, m);
+          analysis[std::size_t(k) * half + i] = table.value(i, column);
+          synth[std::size_t(i) * count + k] = table.value(i, column);
+          synth[std::size_t(half + i) * count + k] = table.d1(i, column);
         }
       legendre[parity].push_back(std::move(analysis));
       synthesis[parity].push_back(std::move(synth));

@@ -38,14 +38,14 @@ Matrix ladder_derivative(int p, const Matrix& table) {
   Matrix result(table.rows(), table.cols());
   for (int m = 0; m <= p; ++m)
     for (int n = m; n <= p; ++n) {
-      auto row = result.row(legendre_index(p, n, m));
+      auto column = result.col(legendre_index(p, n, m));
       const double down = std::sqrt(double(n + m) * (n - m + 1)), up = std::sqrt(double(n - m) * (n + m + 1));
-      row.setZero();
+      column.setZero();
       if (m == 0) {  // P_n,-1 = -P_n,1 without the Condon-Shortley sign
-        if (n >= 1) row -= 0.5 * (down + up) * table.row(legendre_index(p, n, 1));
+        if (n >= 1) column -= 0.5 * (down + up) * table.col(legendre_index(p, n, 1));
       } else {
-        row += 0.5 * down * table.row(legendre_index(p, n, m - 1));
-        if (m + 1 <= n) row -= 0.5 * up * table.row(legendre_index(p, n, m + 1));
+        column += 0.5 * down * table.col(legendre_index(p, n, m - 1));
+        if (m + 1 <= n) column -= 0.5 * up * table.col(legendre_index(p, n, m + 1));
       }
     }
   return result;
@@ -54,23 +54,21 @@ Matrix ladder_derivative(int p, const Matrix& table) {
 }  // namespace
 
 LegendreTable legendre_table(int p, const Vector& theta, int derivatives) {
-  LegendreTable table{p, Matrix(legendre_count(p), theta.size()), {}, {}};
-  for (Eigen::Index i = 0; i < theta.size(); ++i) {
-    const double z = std::cos(theta[i]), s = std::sin(theta[i]);
-    double diagonal = std::sqrt(0.5);
-    for (int m = 0; m <= p; ++m) {
-      if (m > 0) diagonal *= std::sqrt((2.0 * m + 1) / (2.0 * m)) * s;
-      double previous = 0, current = diagonal;
-      table.value(legendre_index(p, m, m), i) = current;
-      for (int n = m + 1; n <= p; ++n) {
-        const double nn = double(n) * n, mm = double(m) * m;
-        const double a = std::sqrt((4 * nn - 1) / (nn - mm));
-        const double b = n == m + 1 ? 0
-                                    : std::sqrt((2.0 * n + 1) * (n - m - 1.0) * (n + m - 1.0) / ((2.0 * n - 3) * (nn - mm)));
-        const double next = a * z * current - b * previous;
-        previous = current;
-        current = next;
-        table.value(legendre_index(p, n, m), i) = current;
+  LegendreTable table{p, Matrix(theta.size(), legendre_count(p)), {}, {}};
+  const Eigen::ArrayXd z = theta.array().cos(), s = theta.array().sin();
+  Eigen::ArrayXd diagonal = Eigen::ArrayXd::Constant(theta.size(), std::sqrt(0.5));
+  for (int m = 0; m <= p; ++m) {
+    if (m > 0) diagonal *= std::sqrt((2.0 * m + 1) / (2.0 * m)) * s;
+    const int first = legendre_index(p, m, m);
+    table.value.col(first) = diagonal;
+    for (int n = m + 1; n <= p; ++n) {
+      const double nn = double(n) * n, mm = double(m) * m;
+      const double a = std::sqrt((4 * nn - 1) / (nn - mm));
+      auto next = table.value.col(first + n - m).array();
+      next = a * z * table.value.col(first + n - m - 1).array();
+      if (n > m + 1) {
+        const double b = std::sqrt((2.0 * n + 1) * (n - m - 1.0) * (n + m - 1.0) / ((2.0 * n - 3) * (nn - mm)));
+        next -= b * table.value.col(first + n - m - 2).array();
       }
     }
   }

@@ -11,12 +11,12 @@ struct GaussLegendre {
 };
 GaussLegendre gauss_legendre(int n);
 
-/// Row of P_nm, 0 <= m <= n, in a table over all degrees up to p, ordered by m, then n: contiguous in n for one m.
+/// Column of P_nm, 0 <= m <= n, in a table over all degrees up to p, ordered by m, then n: contiguous in n for one m.
 constexpr int legendre_index(int p, int n, int m) { return m * (p + 1) - m * (m - 1) / 2 + (n - m); }
 constexpr int legendre_count(int p) { return (p + 1) * (p + 2) / 2; }
 
 /// P_nm(cos theta), normalised to unit square integral over cos(theta) and all P_mm >= 0,
-/// with first and second derivatives in theta: legendre_count(p) x theta.size().
+/// with first and second derivatives in theta: theta.size() x legendre_count(p).
 struct LegendreTable {
   int order = 0;
   Matrix value, d1, d2;

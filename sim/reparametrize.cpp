@@ -53,15 +53,20 @@ Relabelling relabel(Plans& plans, const Coefficients& x, int grid_order, double 
   const Basis& basis = plans.basis(grid_order, grid_order);
   const double scale = band_norm(x, 1, p);
   Relabelling r{grid_order, grid_directions(basis), 0, 0, 0};
-  double first_gradient = -1, least = -1;
-  Matrix best_map = r.map;
+  double first_gradient = -1, least = -1, step = 1;
+  Matrix best_map = r.map, direction;
   for (int iteration = 0; iteration <= most; ++iteration) {
     const FirstDerivatives y = sample_points_first(x, r.map);
     Coefficients gradient = basis.analyze(y.value);
     const double kept = band_norm(gradient, cutoff, p), lost = band_norm(gradient, p + 1, grid_order);
     const double energy = weight_kept * kept * kept + lost * lost;
     if (iteration == 0) r.high_before = std::hypot(kept, lost) / scale;
-    if (least >= 0 && energy >= least) break;  // the step was too long: keep the last map
+    if (least >= 0 && energy >= least) {  // the step was too long: go back and take half of it
+      step /= 2;
+      if (step < 0.1) break;
+      r.map = (best_map + step * direction).rowwise().normalized();
+      continue;
+    }
     least = energy;
     best_map = r.map;
     r.high_after = std::hypot(kept, lost) / scale;
@@ -70,12 +75,14 @@ Relabelling relabel(Plans& plans, const Coefficients& x, int grid_order, double 
     gradient.values.middleRows(cutoff * cutoff, coefficient_count(p) - cutoff * cutoff) *= weight_kept;
     const Matrix slope = basis.synthesize(gradient).values;
     double length = 0;
+    direction.resize(r.map.rows(), 3);
     for (Eigen::Index k = 0; k < r.map.rows(); ++k) {
       const Vec3 s = r.map.row(k).transpose(), x_t = y.t.row(k).transpose(), x_f = y.f.row(k).transpose();
       const Vec3 g = slope.row(k).transpose(), normal = x_t.cross(x_f).normalized();
       length += (g - g.dot(normal) * normal).squaredNorm() * basis.weights()[k];
-      r.map.row(k) = (s + parameter_shift(sphere_frame(s), x_t, x_f, -g)).normalized().transpose();
+      direction.row(k) = parameter_shift(sphere_frame(s), x_t, x_f, -g).transpose();
     }
+    r.map = (best_map + step * direction).rowwise().normalized();
     if (first_gradient < 0) first_gradient = length;
     if (!std::isfinite(length)) throw std::domain_error("reparametrization: the surface is not regular");
     if (length <= stop * stop * first_gradient) break;

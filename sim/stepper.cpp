@@ -64,7 +64,7 @@ bool relabel_vesicle(const Setting& s, VesicleDynamics& v) {
   const int p = v.position.order;
   const Relabelling r = relabel(s.plans, v.position, std::max(2 * p, v.labels.order));
   // Truncating the relabelled surface is an error that stays; a relabelling must lose little of the shape.
-  constexpr double least_gain = 0.9, most_lost = 0.1;
+  constexpr double least_gain = 0.9, most_lost = 0.05;
   if (r.high_after > least_gain * r.high_before || r.lost > most_lost * (r.high_before - r.high_after)) {
     v.high_share = r.high_before;
     return false;

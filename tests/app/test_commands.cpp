@@ -305,3 +305,25 @@ TEST_CASE("info, list, --version and mistakes on the command line answer", "[com
   CHECK(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
   CHECK_THAT(desk({"info", desk.file("t.h5")}).out, Contains("states     6") && Contains("area_error"));
 }
+
+TEST_CASE("without ffmpeg, or with a broken one, the frames are kept and a sentence says why there is no movie", "[commands]") {
+  const Desk desk;
+  fs::create_directory(desk / "bin");
+  const auto run_with_path = [&](const std::string& path, const std::string& out) {
+    return support::run(desk, {"/usr/bin/env", "PATH=" + path, TANKTREAD_PROGRAM, "run", desk.file("s.toml"), "-o", desk.file(out)});
+  };
+  const Outcome missing = run_with_path(desk.file("bin"), "a");
+  CHECK(missing.status == 0);
+  CHECK_THAT(missing.err, Contains("apt-get install ffmpeg"));
+  CHECK(fs::exists(desk / "a/frames/000005.png"));
+  CHECK_FALSE(fs::exists(desk / "a/movie.mp4"));
+
+  support::write_file(desk / "bin/ffmpeg", "#!/bin/sh\nexit 3\n");
+  fs::permissions(desk / "bin/ffmpeg", fs::perms::owner_all);
+  const Outcome broken = run_with_path(desk.file("bin") + ":/bin", "b");
+  CHECK(broken.status == 1);
+  CHECK_THAT(broken.err, Contains("ffmpeg"));
+  CHECK(fs::exists(desk / "b/frames/000005.png"));
+  CHECK_FALSE(fs::exists(desk / "b/movie.mp4"));
+  CHECK_FALSE(fs::exists(desk / "b/movie.mp4.tmp"));
+}

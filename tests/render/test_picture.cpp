@@ -77,7 +77,7 @@ TEST_CASE("the silhouette of an ellipsoid has the area of its projection") {
     render::ViewParameters view = surfaces::bare_view();
     view.camera = row.name;
     const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid(a, r)}), view);
-    const Vec3 d = r.transpose() * row.axes.back;  // line of sight in the ellipsoid's axes
+    const Vec3 d = r.transpose() * render::to_sim(row.axes.back);  // line of sight in the ellipsoid's axes
     const double exact =
         std::numbers::pi * Vec3(a.y() * a.z() * d.x(), a.x() * a.z() * d.y(), a.x() * a.y() * d.z()).norm();
     CHECK(silhouette(render::draw_frame(renderer, frame), frame.camera).area == Approx(exact).epsilon(2e-3));

@@ -1,0 +1,141 @@
+#include "near.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+}  // namespace
+
+NearestPoint nearest_point(const Coefficients& x, const Vec3& target, const Vec3& start) {
+  // Newton on |x(s) - target|^2 in the tangent plane of s. The Hessian is taken by differences of the gradient and
+  // replaced by Gauss-Newton's where it is not positive; a step that does not come nearer is halved.
+  Vec3 s = start.normalized();
+  NearestPoint best;
+  const auto at = [&](const Vec3& d) { return sample_points_first(x, d.transpose()); };
+  FirstDerivatives y = at(s);
+  double distance = (y.value.row(0).transpose() - target).norm();
+  Vec3 normal = Vec3::UnitZ();
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    const double rho = std::max(std::hypot(s[0], s[1]), 1e-12);
+    const Vec3 e_t(s[2] * s[0] / rho, s[2] * s[1] / rho, -rho), e_f(-s[1] / rho, s[0] / rho, 0);
+    const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose() / rho;
+    normal = a.cross(b).normalized();
+    const Vec3 miss = target - y.value.row(0).transpose();
+    const Eigen::Vector2d slope(a.dot(miss), b.dot(miss));
+    Eigen::Matrix2d metric;
+    metric << a.dot(a), a.dot(b), a.dot(b), b.dot(b);
+    const Eigen::Vector2d newton = metric.ldlt().solve(slope);
+    if (newton.norm() < 1e-14) break;
+    double length = 1;
+    bool nearer = false;
+    for (int half = 0; half < 30 && !nearer; ++half, length /= 2) {
+      const Vec3 trial = (s + length * (newton[0] * e_t + newton[1] * e_f)).normalized();
+      const FirstDerivatives z = at(trial);
+      const double d = (z.value.row(0).transpose() - target).norm();
+      if (d < distance) {
+        s = trial;
+        y = z;
+        nearer = true;
+        distance = d;
+      }
+    }
+    if (!nearer) break;
+  }
+  best.parameter = s;
+  best.position = y.value.row(0).transpose();
+  best.distance = distance;
+  best.inside = normal.dot(target - best.position) < 0;
+  return best;
+}
+
+PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
+                  NearOrder order) {
+  const int p = plan.order(), nt = order.latitudes, nf = order.longitudes, width = 2 * p + 1;
+  const Vec3& s = nearest.parameter;
+  const double theta0 = std::atan2(std::hypot(s[0], s[1]), s[2]), phi0 = std::atan2(s[1], s[0]);
+  const Matrix turned = plan.to_pole(resized(x, p).values, theta0, phi0);
+
+  // Graded colatitudes. The metric at the pole is that of the longer tangent: the narrower width in the parameter.
+  const Matrix pole_tangents = [&] {
+    Vector zero(1), quarter(2);
+    zero << 0;
+    quarter << 0, pi / 2;
+    return sample_grid({p, turned}, zero, quarter).t;
+  }();
+  const double metric = std::max(pole_tangents.row(0).norm(), pole_tangents.row(1).norm());
+  const double eps = std::max(nearest.distance / metric, 1e-12), a = std::asinh(pi / eps);
+  const GaussLegendre rule = gauss_legendre(nt);
+  Vector t(nt), weight(nt);
+  for (int i = 0; i < nt; ++i) {
+    const double u = 0.5 * (1 - std::cos(rule.theta[i]));
+    t[i] = eps * std::sinh(a * u);
+    weight[i] = 0.5 * rule.weight[i] * eps * a * std::cosh(a * u) * 2 * pi / nf;
+  }
+
+  // Separable synthesis of x, x_t, x_f; then the kernels; then the transposed synthesis of the 12 components.
+  const LegendreTable table = legendre_table(p, t, 1);
+  Matrix fourier(width, nf), slope(width, nf);
+  for (int j = 0; j < nf; ++j)
+    for (int m = 0; m <= p; ++m) {
+      const double f = 2 * pi * j / nf, k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
+      const double c = k * std::cos(m * f), d = k * std::sin(m * f);
+      fourier(p + m, j) = c, slope(p + m, j) = -m * d;
+      if (m > 0) fourier(p - m, j) = d, slope(p - m, j) = m * c;
+    }
+  Matrix y[3], y_t[3], y_f[3], value(nt, width), dt(nt, width);
+  for (int d = 0; d < 3; ++d) {
+    for (int m = -p; m <= p; ++m) {
+      const int k = std::abs(m), first = legendre_index(p, k, k), count = p - k + 1;
+      Vector column(count);
+      for (int n = k; n <= p; ++n) column[n - k] = turned(coefficient_index(n, m), d);
+      value.col(p + m).noalias() = table.value.middleCols(first, count) * column;
+      dt.col(p + m).noalias() = table.d1.middleCols(first, count) * column;
+    }
+    y[d] = value * fourier;
+    y_t[d] = dt * fourier;
+    y_f[d] = value * slope;
+  }
+  Eigen::ArrayXXd r[3], n[3];
+  for (int d = 0; d < 3; ++d) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    r[d] = target[d] - y[d].array();
+    n[d] = y_t[e].array() * y_f[f].array() - y_t[f].array() * y_f[e].array();
+  }
+  const Eigen::ArrayXXd rr = r[0].square() + r[1].square() + r[2].square(), inverse = rr.rsqrt();
+  const Eigen::ArrayXXd area = (n[0].square() + n[1].square() + n[2].square()).sqrt().colwise() * weight.array();
+  const Eigen::ArrayXXd s0 = area * inverse / (8 * pi), s2 = s0 * inverse.square();
+  const Eigen::ArrayXXd rn = (r[0] * n[0] + r[1] * n[1] + r[2] * n[2]).colwise() * weight.array();
+  const Eigen::ArrayXXd d5 = 3 / (4 * pi) * rn * inverse.square().square() * inverse;
+
+  PointRow row{Matrix(coefficient_count(p), 6), Matrix(coefficient_count(p), 6)};
+  int block = 0;
+  for (int c = 0; c < 3; ++c)
+    for (int e = c; e < 3; ++e, ++block) {
+      const Eigen::ArrayXXd rce = r[c] * r[e];
+      for (const bool dual : {false, true}) {
+        const Matrix kernel = dual ? Matrix(d5 * rce) : c == e ? Matrix(s0 + s2 * rce) : Matrix(s2 * rce);
+        const Matrix spectrum = kernel * fourier.transpose();  // nt x (2p+1)
+        auto out = (dual ? row.dual : row.single).col(block);
+        for (int m = -p; m <= p; ++m) {
+          const int k = std::abs(m), first = legendre_index(p, k, k), count = p - k + 1;
+          const Vector column = table.value.middleCols(first, count).transpose() * spectrum.col(p + m);
+          for (int l = k; l <= p; ++l) out[coefficient_index(l, m)] = column[l - k];
+        }
+      }
+    }
+  row.single = plan.from_pole(row.single, theta0, phi0);
+  row.dual = plan.from_pole(row.dual, theta0, phi0);
+  return row;
+}
+
+Vec3 apply_row(const Matrix& row, const Matrix& density) {
+  const Eigen::Matrix<double, 6, 3> k = row.transpose() * density;
+  return {k(0, 0) + k(1, 1) + k(2, 2), k(1, 0) + k(3, 1) + k(4, 2), k(2, 0) + k(4, 1) + k(5, 2)};
+}
+
+}  // namespace sim

@@ -1,0 +1,24 @@
+// Rotations of the parameter sphere acting on coefficients: x'(s) = x(Q s) with Q = Rz(phi) Ry(theta), which lays the
+// point (theta, phi) at the pole. Ry(theta) = Rx(-pi/2) Rz(theta) Rx(pi/2), so that one constant block matrix per degree
+// and rotations about z do for every angle.
+#pragma once
+
+#include "basis.h"
+
+namespace sim {
+
+class RotationPlan {
+ public:
+  explicit RotationPlan(int order);
+  int order() const { return order_; }
+  /// Coefficients of f(Q s), field by field: (p+1)^2 x fields in and out.
+  Matrix to_pole(const Matrix& coefficients, double theta, double phi) const;
+  /// The transpose: functionals of the rotated coefficients become functionals of the original ones.
+  Matrix from_pole(const Matrix& functionals, double theta, double phi) const;
+
+ private:
+  int order_;
+  std::vector<Matrix> quarter_;  ///< per degree: coefficients of f(Rx(pi/2) s)
+};
+
+}  // namespace sim
