@@ -11,7 +11,7 @@ build=$root/build/release
 
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libfftw3-dev libhdf5-dev libfmt-dev zlib1g-dev
           libtomlplusplus-dev libcli11-dev
-          libpng-dev libcairo2-dev libfreetype-dev libgl-dev libegl-dev fonts-dejavu-core libosmesa6 ffmpeg
+          libglm-dev libpng-dev libcairo2-dev libfreetype-dev libgl-dev libegl-dev fonts-dejavu-core libosmesa6 ffmpeg
           catch2 libbenchmark-dev python3 python3-h5py)
 
 usage() {

@@ -9,6 +9,7 @@
 #include "version.h"
 
 #include "render/draw.h"
+#include "render/sequence.h"
 #include "sim/diagnostics.h"
 #include "sim/flows.h"
 
@@ -37,17 +38,6 @@ std::vector<double> frame_times(const sim::TrajectoryReader& trajectory, const r
   return times;
 }
 
-namespace {
-
-/// Cubic with values x0, x1 and time derivatives v0, v1 at the ends of an interval of length h, at share u of it.
-sim::Matrix hermite(const sim::Matrix& x0, const sim::Matrix& v0, const sim::Matrix& x1, const sim::Matrix& v1, double h,
-                    double u) {
-  const double a = u * u * (3 - 2 * u), b = u * (1 - u) * (1 - u), c = -u * u * (1 - u);
-  return (1 - a) * x0 + a * x1 + h * (b * v0 + c * v1);
-}
-
-}  // namespace
-
 sim::State state_at(const sim::TrajectoryReader& trajectory, double time) {
   std::int64_t low = 0, high = trajectory.count() - 1;
   while (low < high) {  // first state at or after `time`
@@ -57,14 +47,7 @@ sim::State state_at(const sim::TrajectoryReader& trajectory, double time) {
   }
   sim::State after = trajectory.state(low);
   if (low == 0 || time >= after.time) return after;
-  const double start = trajectory.time(low - 1), h = after.time - start, u = (time - start) / h;
-  if (u < 1e-9) return trajectory.state(low - 1);
-  // The later state carries the earlier one in its own parametrisation, so labels and tracers are those of `after`.
-  for (sim::VesicleState& v : after.vesicles)
-    v.position.values = hermite(v.position_before.values, v.velocity_before.values, v.position.values, v.velocity.values,
-                                h, u);
-  after.time = time;
-  return after;
+  return render::interpolated(trajectory.state(low - 1), after, time);
 }
 
 namespace {

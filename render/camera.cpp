@@ -154,33 +154,56 @@ Camera make_camera(const Framing& framing, const dvec3& centroid) {
   return camera;
 }
 
+glm::dvec2 Camera::picture_place(const dvec3& point) const {
+  const glm::vec4 clip = projection * (view * glm::vec4(point, 1));
+  return glm::dvec2(clip) / static_cast<double>(clip.w);
+}
+
 sim::Matrix arrow_points(const Framing& framing, const dvec3& centroid) {
   const Camera camera = make_camera(framing, centroid);
-  // The plane lies just behind the bodies, where a perspective picture is wider.
-  const double behind = framing.depth * 1.15 + 0.05 * framing.half_height;
-  const double widen = framing.perspective ? (framing.distance + behind) / framing.distance : 1;
-  const double height = 2 * camera.half_height * widen, width = 2 * camera.half_width * widen;
-  const double step_y = height / 7.5, step_x = height / 4.2;
-  // A following camera carries the window over a net at rest.
-  const double shift_x = framing.follows ? glm::dot(camera.target, framing.axes.right) : 0;
-  const double shift_y = framing.follows ? glm::dot(camera.target, framing.axes.up) : 0;
-  const auto first = [](double low, double step, double phase) { return std::ceil(low / step - phase); };
+  // The coordinate plane that faces the viewer most, through the target: there the velocity is what it seems to be.
+  const ViewAxes& axes = framing.axes;
+  const auto leading = [](const dvec3& v) {
+    const dvec3 a = glm::abs(v);
+    return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+  };
+  const auto unit = [](int axis) {
+    dvec3 e(0);
+    e[axis] = 1;
+    return e;
+  };
+  const int normal = leading(axes.back);
+  dvec3 in_plane = axes.right;
+  in_plane[normal] = 0;
+  const int across = leading(in_plane), along = 3 - normal - across;
+  const dvec3 e1 = unit(across), e2 = unit(along);
+
+  const double height = 2 * camera.half_height, width = 2 * camera.half_width;
+  const double step1 = height / 4.2, step2 = height / 7.5;
+  // A following camera carries the window over a net at rest; passing arrows enter from outside the picture.
+  const double shift1 = framing.follows ? camera.target[across] : 0, shift2 = framing.follows ? camera.target[along] : 0;
+  const double phase1 = framing.follows ? 0 : (std::lround(width / step1) % 2 == 0 ? 0.5 : 0.0);
+  const glm::dvec2 reach = framing.follows ? glm::dvec2(1.2, 1.2) : glm::dvec2(0.94, 0.86);
+  const auto first = [](double middle, double extent, double step) { return std::floor((middle - extent) / step); };
   std::vector<dvec3> points;
-  const double phase_x = framing.follows ? 0 : (std::lround(width / step_x) % 2 == 0 ? 0.5 : 0.0);
-  // Passing arrows enter from outside the picture, and shrink where captions are (see draw_arrows).
-  const double reach_x = framing.follows ? 0.60 * width : 0.47 * width,
-               reach_y = framing.follows ? 0.60 * height : 0.41 * height;
-  for (double j = first(shift_y - reach_y, step_y, 0.0); j * step_y <= shift_y + reach_y; ++j)
-    for (double i = first(shift_x - reach_x, step_x, phase_x); (i + phase_x) * step_x <= shift_x + reach_x; ++i) {
-      const double x = (i + phase_x) * step_x - shift_x, y = j * step_y - shift_y;
-      const bool under_text = x < -0.24 * width && (y > 0.30 * height || y < -0.36 * height);
-      if (under_text && !framing.follows) continue;
-      points.push_back(camera.target + x * framing.axes.right + y * framing.axes.up - behind * framing.axes.back);
+  for (double j = first(shift2, height, step2); j * step2 <= shift2 + height; ++j)
+    for (double i = first(shift1, width, step1); (i + phase1) * step1 <= shift1 + width; ++i) {
+      const dvec3 point = camera.target + ((i + phase1) * step1 - shift1) * e1 + (j * step2 - shift2) * e2;
+      const glm::dvec2 place = camera.picture_place(point);
+      if (std::abs(place.x) > reach.x || std::abs(place.y) > reach.y) continue;
+      if (!framing.follows && clear_of_captions(place) < 1) continue;
+      points.push_back(point);
     }
   sim::Matrix result(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t k = 0; k < points.size(); ++k) 
+  for (std::size_t k = 0; k < points.size(); ++k)
     result.row(static_cast<Eigen::Index>(k)) = to_sim(points[k]).transpose();
   return result;
+}
+
+double clear_of_captions(const glm::dvec2& place) {
+  constexpr double ramp = 0.12;
+  const double right = (place.x + 0.60) / ramp, below = (0.72 - place.y) / ramp, above = (place.y + 0.78) / 0.06;
+  return glm::smoothstep(0.0, 1.0, std::max(right, std::min(below, above)));
 }
 
 }  // namespace render

@@ -59,12 +59,18 @@ struct Camera {
   glm::dvec3 target{0};     ///< in the middle of the picture
   double half_width = 1, half_height = 1;  ///< of the picture in the plane of the target
   bool perspective = true;
+
+  /// Where a point of the scene is seen: -1..1 from left to right and from bottom to top.
+  glm::dvec2 picture_place(const glm::dvec3& point) const;
 };
 /// centroid: of the frame's own state; a fixed framing ignores it.
 Camera make_camera(const Framing& framing, const glm::dvec3& centroid);
 
-/// Points where flow arrows start: a regular net in the picture, in a plane behind everything, clear of the captions.
-/// count x 3. The net is fixed in space under a following camera, so that arrows pass by.
+/// Middles of the flow arrows: a regular net in the coordinate plane through the target that faces the viewer most, clear
+/// of the captions. count x 3. The net is fixed in space under a following camera, so that arrows pass by.
 sim::Matrix arrow_points(const Framing& framing, const glm::dvec3& centroid);
+
+/// 0 where captions stand, 1 elsewhere, smooth between. place: as Camera::picture_place() gives it.
+double clear_of_captions(const glm::dvec2& place);
 
 }  // namespace render

@@ -27,15 +27,33 @@ float samples(const ViewParameters& view, double px, double least) {
   return static_cast<float>(view.supersampling * std::max(px * view.size[1] / 1080.0, std::min(px, least)));
 }
 
-// 0 under the captions, 1 elsewhere, smooth between: a passing arrow shrinks away instead of vanishing at once.
-// place: scene coordinates.
-double clear_of_captions(const Camera& camera, const glm::vec3& place) {
-  const glm::vec4 clip = camera.projection * (camera.view * glm::vec4(place, 1));
-  const double x = clip.x / clip.w, y = clip.y / clip.w;  // -1..1
-  constexpr double ramp = 0.12;
-  const double outside = std::max((x + 0.60) / ramp, std::min((0.72 - y) / ramp, (y + 0.78) / 0.06));
-  const double t = std::clamp(outside, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
+// The membranes as the picture shows them: points in half heights of the picture, dense enough for distances to them.
+std::vector<glm::dvec2> shadows(const Frame& frame) {
+  constexpr int stride = 3;  // of the mesh: 32 x 64 points
+  std::vector<glm::dvec2> places;
+  for (const Body& body : frame.bodies) {
+    const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
+    for (int j = 0; j < columns; j += stride)
+      for (int i = 0; i < rings; i += stride) {
+        const glm::dvec2 place = frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(j * rings + i)]);
+        places.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
+      }
+  }
+  return places;
+}
+
+// 0 when the segment touches a membrane's shadow, 1 when it is well away: half an arrow beside a contour looks like
+// something that belongs to the vesicle.
+double clear_of_bodies(const std::vector<glm::dvec2>& shadows, const glm::dvec2& tail, const glm::dvec2& tip) {
+  constexpr double near = 0.05, far = 0.11;  // half heights
+  const glm::dvec2 along = tip - tail;
+  const double length2 = std::max(glm::dot(along, along), 1e-12);
+  double nearest2 = far * far;
+  for (const glm::dvec2& p : shadows) {
+    const glm::dvec2 away = p - tail - along * std::clamp(glm::dot(p - tail, along) / length2, 0.0, 1.0);
+    nearest2 = std::min(nearest2, glm::dot(away, away));
+  }
+  return glm::smoothstep(near, far, std::sqrt(nearest2));
 }
 
 void check(const ViewParameters& view) {
@@ -48,6 +66,16 @@ void set_camera(const Program& program, const Camera& camera) {
   program.set("u_view", camera.view);
   program.set("u_projection", camera.projection);
   program.set("u_perspective", camera.perspective ? 1 : 0);
+}
+
+void set_ground(const Program& program, const Frame& frame) {
+  const bool is_white = frame.view.background == "white";
+  program.set("u_top", vector_of(is_white ? white : ground_top));
+  program.set("u_bottom", vector_of(is_white ? white : ground_bottom));
+}
+
+Colour outline_colour(const Body& body) {
+  return {0.10 + 0.08 * body.colour.r, 0.11 + 0.08 * body.colour.g, 0.14 + 0.08 * body.colour.b};
 }
 
 }  // namespace
@@ -84,6 +112,7 @@ const Program& Renderer::program(const std::string& name, const std::string& def
   const std::string head = "#version 330 core\n" + defines;
   std::string library;
   if (name == "body" || name == "arrow") library += shader_text("light.glsl", shader_dir_);
+  if (name == "ground" || name == "arrow") library += shader_text("ground.glsl", shader_dir_);
   if (name == "body") library += shader_text("lines.glsl", shader_dir_);
   return programs_
       .try_emplace(key, context_.gl(), name, head + shader_text(name + ".vert", shader_dir_),
@@ -111,12 +140,10 @@ void Renderer::begin(const Frame& frame) {
 }
 
 void Renderer::draw_ground(const Frame& frame) {
-  if (frame.view.background == "white") return;
   const Gl& gl = context_.gl();
   const Program& p = program("ground", "");
   p.use();
-  p.set("u_top", vector_of(ground_top));
-  p.set("u_bottom", vector_of(ground_bottom));
+  set_ground(p, frame);
   nothing_.bind();
   gl.Disable(GL_DEPTH_TEST);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
@@ -129,15 +156,22 @@ void Renderer::draw_arrows(const Frame& frame) {
   double fastest = flow.reference_speed;
   if (fastest <= 0) fastest = flow.velocities.rowwise().norm().maxCoeff();
   if (!(fastest > 0) || !std::isfinite(fastest)) return;
-  std::vector<glm::vec3> starts, vectors;
+  const Camera& camera = frame.camera;
+  const std::vector<glm::dvec2> bodies = shadows(frame);
+  const auto place_of = [&](const glm::dvec3& point) {
+    return camera.picture_place(point) * glm::dvec2(camera.half_width / camera.half_height, 1);
+  };
+  std::vector<glm::vec4> starts;
+  std::vector<glm::vec3> vectors;
   for (Eigen::Index i = 0; i < flow.points.rows(); ++i) {
-    const glm::dvec3 v = to_glm(flow.velocities.row(i)) / fastest;
+    const glm::dvec3 v = to_glm(flow.velocities.row(i)) / fastest, middle = to_glm(flow.points.row(i));
     if (!(glm::length(v) >= weakest_arrow)) continue;
-    const glm::vec3 start = to_glm(flow.points.row(i));
-    const double size = longest_arrow * frame.camera.half_height * clear_of_captions(frame.camera, start);
-    if (size <= 0) continue;
-    starts.push_back(start);
-    vectors.emplace_back(v * size);
+    const glm::dvec3 arrow = v * longest_arrow * camera.half_height;
+    const double shown = clear_of_captions(camera.picture_place(middle)) *
+                         clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
+    if (shown <= 0) continue;
+    starts.emplace_back(middle, shown);
+    vectors.emplace_back(arrow);
   }
   if (starts.empty()) return;
   const Gl& gl = context_.gl();
@@ -145,10 +179,21 @@ void Renderer::draw_arrows(const Frame& frame) {
   p.use();
   set_camera(p, frame.camera);
   p.set("u_colour", linear(arrow_colour));
+  set_ground(p, frame);
+  p.set("u_height", static_cast<float>(framebuffer_->height()));
   p.set("u_thickness", static_cast<float>(arrow_thickness * frame.camera.half_height));
   arrows_.attribute(2, starts, 1);
   arrows_.attribute(3, vectors, 1);
   gl.DrawArraysInstanced(GL_TRIANGLES, 0, arrow_shape_vertices, static_cast<GLsizei>(starts.size()));
+  gl.Clear(GL_DEPTH_BUFFER_BIT);  // arrows stand behind everything, though the plane they show goes through the vesicles
+}
+
+void Renderer::upload(const Body& body) {
+  bodies_.attribute(0, body.mesh.position);
+  bodies_.attribute(1, body.mesh.normal);
+  if (uploaded_plan_ == body.mesh.plan) return;
+  bodies_.indices(body.mesh.plan->indices());
+  uploaded_plan_ = body.mesh.plan;
 }
 
 void Renderer::draw_body(const Frame& frame, const Body& body) {
@@ -160,7 +205,8 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
   set_camera(p, frame.camera);
   const glm::vec3 colour = linear(style.own_colour ? body.colour : white);
   p.set("u_colour", colour);
-  p.set("u_line_colour", 0.10F * colour + glm::vec3(0.012F, 0.015F, 0.022F));
+  p.set("u_line_colour", 0.07F * colour + glm::vec3(0.010F, 0.012F, 0.018F));
+  p.set("u_contour", vector_of(outline_colour(body)));
   p.set("u_half_width", samples(frame.view, frame.view.line_width / 2, 0.42));
   if (style.tracers && frame.view.tracers && !tracers.empty()) {
     std::vector<glm::vec4> places;
@@ -172,31 +218,45 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
     bodies_.attribute(3, nearest_tracers(body.mesh));
     p.set("u_tracer_radius", static_cast<float>(tracer_radius * body.mesh.area_radius));
   }
-  bodies_.attribute(0, body.mesh.position);
-  bodies_.attribute(1, body.mesh.normal);
+  upload(body);
   bodies_.attribute(2, frame.view.lines == "grid" ? body.mesh.plan->parameters() : body.mesh.label);
-  if (uploaded_plan_ != body.mesh.plan) {
-    bodies_.indices(body.mesh.plan->indices());
-    uploaded_plan_ = body.mesh.plan;
-  }
   gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(body.mesh.plan->indices().size()), GL_UNSIGNED_INT, nullptr);
 }
 
-// Follows draw_body() of the same body, whose vertices it draws again.
-void Renderer::draw_outline(const Frame& frame, const Body& body) {
-  if (frame.view.outline_width <= 0) return;
+void Renderer::draw_outline(const Frame& frame, const Body& body, double wider, double alpha) {
   const Gl& gl = context_.gl();
   const Program& p = program("outline", "");
   p.use();
   set_camera(p, frame.camera);
-  const float width = samples(frame.view, frame.view.outline_width, 1.0);
+  const float width = samples(frame.view, frame.view.outline_width, 1.0) + static_cast<float>(wider);
   p.set("u_push", glm::vec2(2 * width / static_cast<float>(framebuffer_->width()),
-                                  2 * width / static_cast<float>(framebuffer_->height())));
-  const Colour dark{0.10 + 0.08 * body.colour.r, 0.11 + 0.08 * body.colour.g, 0.14 + 0.08 * body.colour.b};
-  p.set("u_colour", vector_of(dark));
+                            2 * width / static_cast<float>(framebuffer_->height())));
+  p.set("u_colour", vector_of(outline_colour(body)));
+  p.set("u_alpha", static_cast<float>(alpha));
   gl.CullFace(GL_FRONT);
   gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(body.mesh.plan->indices().size()), GL_UNSIGNED_INT, nullptr);
   gl.CullFace(GL_BACK);
+}
+
+void Renderer::draw_bodies(const Frame& frame) {
+  const bool outlined = frame.view.outline_width > 0;
+  for (const Body& body : frame.bodies) {
+    draw_body(frame, body);
+    if (outlined) draw_outline(frame, body, -1.0 / 3, 1);
+  }
+  if (!outlined) return;
+  // Two hulls more make thirds of a sample at the outer edge. They let through what lies behind: all of that is there now.
+  const Gl& gl = context_.gl();
+  gl.Enable(GL_BLEND);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl.DepthMask(GL_FALSE);
+  for (const Body& body : frame.bodies) {
+    if (frame.bodies.size() > 1) upload(body);
+    draw_outline(frame, body, 0, 1.0 / 2);
+    draw_outline(frame, body, 1.0 / 3, 1.0 / 3);
+  }
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
 }
 
 Image Renderer::finish(const Frame& frame) {
@@ -211,10 +271,7 @@ Image draw_frame(Renderer& renderer, const Frame& frame) {
   renderer.begin(frame);
   renderer.draw_ground(frame);
   renderer.draw_arrows(frame);
-  for (const Body& body : frame.bodies) {
-    renderer.draw_body(frame, body);
-    renderer.draw_outline(frame, body);
-  }
+  renderer.draw_bodies(frame);
   Image image = renderer.finish(frame);
   draw_captions(image, renderer.font_, frame);
   return image;

@@ -1,4 +1,4 @@
-// Draws a frame. draw_frame() reads like the list of its passes: ground, arrows, bodies, outlines, captions.
+// Draws a frame. draw_frame() reads like the list of its passes: ground, arrows, bodies with outlines, captions.
 #pragma once
 
 #include "context.h"
@@ -31,8 +31,11 @@ class Renderer {
   void begin(const Frame&);
   void draw_ground(const Frame&);
   void draw_arrows(const Frame&);
+  void draw_bodies(const Frame&);
+  void upload(const Body&);
   void draw_body(const Frame&, const Body&);
-  void draw_outline(const Frame&, const Body&);
+  /// Of the body uploaded last, `wider` samples than the view's outline.
+  void draw_outline(const Frame&, const Body&, double wider, double alpha);
   Image finish(const Frame&);
 
   GlContext context_;

@@ -25,7 +25,7 @@ struct ViewParameters {
   std::string lines = "material";
   int grid_parallels = 11;
   int grid_meridians = 24;
-  double line_width = 1.7;     ///< px of the finished picture, at a height of 1080 px
+  double line_width = 2.2;     ///< px of the finished picture, at a height of 1080 px
   double outline_width = 2.2;  ///< px at 1080
   bool tracers = true;
   bool flow_arrows = true;

@@ -46,6 +46,7 @@ std::string body_defines(const StyleRow& style, const ViewParameters& view, std:
                         std::max(cap, middle), middle);
     text += fmt::format("#define CAP_THETA {:.9f}\n#define MIDDLE_THETA {:.9f}\n", spacing, 2 * spacing);
   }
+  if (view.outline_width > 0) text += "#define CONTOUR\n";
   if (style.tracers && view.tracers && tracers > 0) text += fmt::format("#define TRACERS {}\n", tracers);
   return text;
 }

@@ -1,11 +1,12 @@
 // Arrows of the flow: one unit arrow along x, instanced.
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
-layout(location = 2) in vec3 a_start;   // of the instance
+layout(location = 2) in vec4 a_start;   // of the instance; w: 0 faded into the ground .. 1
 layout(location = 3) in vec3 a_vector;  // its direction and length
 uniform mat4 u_view, u_projection;
 uniform float u_thickness;
 out vec3 v_eye, v_normal;
+out float v_shown;
 void main() {
   float size = length(a_vector);
   vec3 x = a_vector / max(size, 1e-9);
@@ -14,9 +15,10 @@ void main() {
   // the head keeps its shape: x < 0 is measured from the tip in units of the thickness, x >= 0 is the tail
   float thickness = u_thickness * min(1.0, size / (9.0 * u_thickness));
   float along = a_position.x < 0.0 ? size + a_position.x * thickness : a_position.x;
-  vec3 place = a_start + (along - 0.5 * size) * x + thickness * (a_position.y * y + a_position.z * z);
+  vec3 place = a_start.xyz + (along - 0.5 * size) * x + thickness * (a_position.y * y + a_position.z * z);
   vec4 eye = u_view * vec4(place, 1.0);
   v_eye = eye.xyz;
   v_normal = mat3(u_view) * (a_normal.x * x + a_normal.y * y + a_normal.z * z);
+  v_shown = a_start.w;
   gl_Position = u_projection * eye;
 }

@@ -3,6 +3,7 @@
 //   CHECKER     patches between PARALLELS and MERIDIANS
 //   MARKS       a red meridian and equator
 //   FLAT        unlit
+//   CONTOUR     the inner edge of the outline
 //   TRACERS     number of tracer dots
 in vec3 v_eye, v_normal, v_label;
 out vec4 f_colour;
@@ -10,6 +11,9 @@ uniform vec3 u_colour;       // linear
 uniform vec3 u_line_colour;  // linear
 uniform float u_half_width;  // of lines, samples
 uniform bool u_perspective;
+#ifdef CONTOUR
+uniform vec3 u_contour;  // sRGB
+#endif
 #ifdef TRACERS
 flat in vec4 v_dot, v_next_dot;  // the two tracers nearest to this triangle: eye space, w: 1 bright, 0 dark, -1 none
 uniform vec3 u_tracer_bright, u_tracer_dark;
@@ -45,7 +49,7 @@ void main() {
   line = max(line, meridians(p, u_half_width));
   line = max(line, pole_dot(p, u_half_width));
 #endif
-  albedo = mix(albedo, u_line_colour, 0.88 * line);
+  albedo = mix(albedo, u_line_colour, 0.93 * line);
   gloss *= 1.0 - 0.7 * line;
 #endif
 
@@ -73,8 +77,16 @@ void main() {
 #endif
 
 #ifdef FLAT
-  f_colour = vec4(encode(albedo), 1.0);
+  vec3 colour = encode(albedo);
 #else
-  f_colour = vec4(encode(lit(albedo, n, v, gloss)), 1.0);
+  vec3 colour = encode(lit(albedo, n, v, gloss));
 #endif
+
+#ifdef CONTOUR
+  // Toward a contour the cosine falls like the root of the distance, so its square over its gradient is the distance.
+  float cosine = dot(n, v), square = cosine * cosine;
+  float to_contour = square / max(length(vec2(dFdx(square), dFdy(square))), 1e-9);
+  colour = mix(u_contour, colour, smoothstep(0.2, 1.5, to_contour));
+#endif
+  f_colour = vec4(colour, 1.0);
 }

@@ -1,4 +1,5 @@
-// Inverted hull: back faces, pushed outward along the projected normal by a constant number of samples.
+// Inverted hull: back faces, pushed outward along the projected normal by a constant number of samples. Its edge is that
+// of a polygon, without shades between; hulls of several widths, one over the other, make up for that.
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 uniform mat4 u_view, u_projection;

@@ -21,13 +21,14 @@ GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b,
     result.converged = true;
     return result;
   }
-  std::vector<Vector> basis{r / beta};
+  std::vector<Vector> basis{r / beta}, directions;
   Matrix h = Matrix::Zero(most_iterations + 1, most_iterations);
   Vector g = Vector::Zero(most_iterations + 1), cosine(most_iterations), sine(most_iterations);
   g[0] = beta;
   int k = 0;
   while (k < most_iterations && result.residual > tolerance) {
-    Vector w = A(inverse(basis[k]));
+    directions.push_back(inverse(basis[k]));
+    Vector w = A(directions[k]);
     // Modified Gram-Schmidt, one row at a time; then the Givens rotations of the earlier columns.
     for (int i = 0; i <= k; ++i) {
       h(i, k) = w.dot(basis[i]);
@@ -55,9 +56,7 @@ GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b,
   }
   result.iterations = k;
   const Vector y = h.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(g.head(k));
-  Vector sum = Vector::Zero(b.size());
-  for (int i = 0; i < k; ++i) sum += y[i] * basis[i];
-  result.solution += inverse(sum);
+  for (int i = 0; i < k; ++i) result.solution += y[i] * directions[i];
   result.converged = result.residual <= tolerance;
   return result;
 }

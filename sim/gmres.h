@@ -1,4 +1,5 @@
-// GMRES without restart, right-preconditioned, so that the residual it reports is the true one.
+// Flexible GMRES without restart, preconditioned from the right: the residual it reports is the true one, and the
+// preconditioner may differ from one application to the next.
 #pragma once
 
 #include "types.h"

@@ -243,12 +243,6 @@ struct SourcePoint {
   Lane x[3], n[3], area;  ///< position, area-weighted normal x_t x x_f, its length
 };
 
-Lane lane_sqrt(Lane v) {
-  Lane r{};
-  for (int i = 0; i < lanes; ++i) r[i] = std::sqrt(v[i]);
-  return r;
-}
-
 /// Stokes kernels at the four targets of a tile: S |n| w/(8 pi) and +3/(4 pi) (r.n) r r^T/|r|^5 w, n = x_t x x_f.
 void kernels(const Lane* target, const SourcePoint& y, double weight, bool with_double, Lane* out) {
   const Lane r0 = target[0] - y.x[0], r1 = target[1] - y.x[1], r2 = target[2] - y.x[2];

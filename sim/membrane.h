@@ -47,6 +47,16 @@ Coefficients divergence(const Membrane&, const Coefficients& velocity);
 /// Buoyancy as a traction on the membrane, (density inside - outside) (g.x) n: points x 3. It adds up to the weight.
 Matrix buoyancy_force(const Membrane&, const Vec3& gravity);
 
+/// Forces as coefficients of degree p: f_b(c u) + f_sigma(sigma); and f_b(x) plus buoyancy.
+Coefficients implicit_force(const Membrane&, double c, const Motion&);
+Coefficients known_force(const Membrane&, const Vec3& gravity, const Coefficients& position);
+
+/// (1 - lambda) D u + S f.
+Coefficients layer_velocity(const Membrane&, const Coefficients& force, const Coefficients& velocity);
+
+/// Both rows of (39), packed, from the trial velocity u and the velocity v that all layers make of it: alpha u - v, -P v.
+Vector system_rows(const Membrane&, const Coefficients& u, const Coefficients& v);
+
 /// Left-hand side of (39) for the packed unknowns.
 Vector apply_system(const Membrane&, double c, const Vector& unknowns);
 
@@ -67,5 +77,11 @@ struct Solve {
 };
 /// Solves (39) from a guess. On an exact sphere the constant tension is a null vector; it stays what the guess has.
 Solve solve_system(const Membrane&, double c, const Coefficients& forcing, const Motion& guess, double tolerance);
+
+
+/// Eq. (43): the tension that makes (r + S f_sigma) / alpha free of divergence, -P S f_sigma(sigma) = P r.
+Solve solve_tension(const Membrane&, const Coefficients& r, const Motion& guess, double tolerance);
+/// Eq. (44): the velocity for a known tension, alpha u - (1-lambda) D u - S f_b(c u) = r + S f_sigma(sigma).
+Solve solve_position(const Membrane&, double c, const Coefficients& r, const Motion& known, double tolerance);
 
 }  // namespace sim

@@ -40,6 +40,8 @@ inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 inline constexpr std::array<std::string_view, 3> time_factor_names{"constant", "oscillating", "step"};
 inline constexpr std::array<std::string_view, 3> reparametrization_names{"auto", "always", "off"};
 
+inline constexpr std::array<std::string_view, 2> preconditioner_names{"diagonal", "block"};
+
 /// One term of the background flow u_inf; several terms add up.
 struct FlowParameters {
   std::string kind = "none";
@@ -159,7 +161,11 @@ struct NumericsParameters {
   double gmres_tolerance = 1e-10;
   int source_order = 0;              ///< degree of the rotated source grids; 0: p + 1
   int label_order = 0;               ///< degree of the material labels; 0: max(2p, 24)
+  std::string preconditioner = "diagonal";
+  int interaction_order = 0;         ///< degree of the smooth source grids between vesicles; 0: p^(3/2)
   bool near_rule = true;
+  int near_latitudes = 32;
+  int near_longitudes = 32;
   double gap_floor = 1e-3;
   double tail_warning = 0.15;
   double step_area_bound = 0.02;
@@ -185,7 +191,17 @@ void visit(P& p, V&& v) {
               .maximum = 256, .zero_is_auto = true}, p.source_order);
   v(Parameter{.name = "label_order", .unit = "", .meaning = "order of the material labels; auto: max(2p, 24)", .minimum = 0,
               .maximum = 128, .zero_is_auto = true}, p.label_order);
+  v(Parameter{.name = "preconditioner", .unit = "",
+              .meaning = "of the coupled solve: the spectral diagonal, or a loose solve of each vesicle's own block",
+              .choices = preconditioner_names}, p.preconditioner);
+  v(Parameter{.name = "interaction_order", .unit = "",
+              .meaning = "order of the smooth source grids between vesicles; auto: p^(3/2)", .minimum = 0, .maximum = 512,
+              .zero_is_auto = true}, p.interaction_order);
   v(Parameter{.name = "near_rule", .unit = "", .meaning = "near-singular quadrature between close vesicles"}, p.near_rule);
+  v(Parameter{.name = "near_latitudes", .unit = "", .meaning = "graded latitudes of the near-singular rule",
+              .minimum = 4, .maximum = 512}, p.near_latitudes);
+  v(Parameter{.name = "near_longitudes", .unit = "", .meaning = "longitudes of the near-singular rule", .minimum = 4,
+              .maximum = 512}, p.near_longitudes);
   v(Parameter{.name = "gap_floor", .unit = "length", .meaning = "two membranes nearer than this stop the run",
               .minimum = 0}, p.gap_floor);
   v(Parameter{.name = "tail_warning", .unit = "",

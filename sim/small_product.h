@@ -2,12 +2,19 @@
 // assembly. A lane is one of four targets, so every step of the assembly is such a product and none needs a shuffle.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 namespace sim {
 
 constexpr int lanes = 4;
 using Lane = double __attribute__((vector_size(lanes * sizeof(double))));
+
+inline Lane lane_sqrt(Lane v) {
+  Lane r{};
+  for (int i = 0; i < lanes; ++i) r[i] = std::sqrt(v[i]);
+  return r;
+}
 
 /// Rows of B and C start at b + b_row[k] and c + c_row[m] (in vectors); A is rows x depth, row-major, leading dimension a_ld.
 struct SmallProduct {

@@ -2,6 +2,7 @@
 
 #include "dealias.h"
 #include "norms.h"
+#include "parallel.h"
 #include "shapes.h"
 
 #include <fmt/format.h>
@@ -15,44 +16,129 @@ namespace {
 
 constexpr double four_pi = 4 * std::numbers::pi;
 
-/// x+ = h + c u with everything frozen at `frozen`.
-Advance implicit_step(const Setting& s, const VesicleDynamics& v, const Material& material, const Coefficients& frozen,
-                      const Coefficients& history, double c, double time, const Motion& guess) {
-  const Membrane m = freeze_membrane(s.plans, material, frozen, v.upsampling, s.scene.numerics.source_order);
-  const Coefficients r = forcing(m, s.scene.flows, time, s.scene.buoyancy.gravity, history);
-  const Solve solve = solve_system(m, c, r, guess, s.scene.numerics.gmres_tolerance);
-  if (!solve.converged)
-    throw StepFailure(fmt::format("the linear solver stopped at a relative residual of {:.1e} after {} iterations",
-                                  solve.residual, solve.iterations));
-  return {{frozen.order, history.values + c * solve.motion.velocity.values}, solve.motion, solve.iterations, solve.residual};
+std::vector<int> upsamplings(const Dynamics& d) {
+  std::vector<int> rates;
+  for (const VesicleDynamics& v : d.vesicles) rates.push_back(v.upsampling);
+  return rates;
 }
 
-Advance backward_euler(const Setting& s, const VesicleDynamics& v, const Material& material, const Coefficients& x,
-                       double time, double dt, const Motion& guess) {
-  return implicit_step(s, v, material, x, x, dt, time + dt, guess);
+std::vector<Coefficients> positions(const Dynamics& d) {
+  std::vector<Coefficients> x;
+  for (const VesicleDynamics& v : d.vesicles) x.push_back(v.position);
+  return x;
 }
 
-Advance globally_implicit(const Setting& s, const Dynamics& d, std::size_t k, double dt) {
-  const VesicleDynamics& v = d.vesicles[k];
-  return backward_euler(s, v, s.materials[k], v.position, d.time, dt, v.motion);
+std::vector<Motion> motions(const Dynamics& d) {
+  std::vector<Motion> m;
+  for (const VesicleDynamics& v : d.vesicles) m.push_back(v.motion);
+  return m;
 }
 
-Advance bdf2(const Setting& s, const Dynamics& d, std::size_t k, double dt) {
-  const VesicleDynamics& v = d.vesicles[k];
-  const Material& material = s.materials[k];
-  if (!d.history) {
-    const Advance whole = backward_euler(s, v, material, v.position, d.time, dt, v.motion);
-    const Advance half = backward_euler(s, v, material, v.position, d.time, dt / 2, v.motion);
-    Advance last = backward_euler(s, v, material, half.position, d.time + dt / 2, dt / 2, half.motion);
-    last.position.values = 2 * last.position.values - whole.position.values;
-    last.iterations += whole.iterations + half.iterations;
-    last.residual = std::max({whole.residual, half.residual, last.residual});
-    return last;
-  }
+Suspension freeze(const Setting& s, const Dynamics& d, std::span<const Coefficients> frozen) {
+  const NumericsParameters& n = s.scene.numerics;
+  SuspensionOptions options{n.source_order, {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}}};
+  return freeze_suspension(s.plans, s.materials, frozen, upsamplings(d), options);
+}
+
+void require_converged(const char* what, bool converged, double residual, int iterations) {
+  if (!converged)
+    throw StepFailure(fmt::format("the {} stopped at a relative residual of {:.1e} after {} iterations", what, residual,
+                                  iterations));
+}
+
+SuspensionSolve solve(const Setting& s, const Suspension& suspension, double c, std::span<const Coefficients> r,
+                      std::span<const Motion> guess) {
+  const Preconditioner kind =
+      s.scene.numerics.preconditioner == "block" ? Preconditioner::block : Preconditioner::diagonal;
+  SuspensionSolve result = solve_suspension(suspension, c, r, guess, s.scene.numerics.gmres_tolerance, kind);
+  require_converged("linear solver", result.converged, result.residual, result.iterations);
+  return result;
+}
+
+/// x+ = h + c u with everything frozen at `frozen` and the flow taken at `time`.
+Advance implicit_step(const Setting& s, const Dynamics& d, std::span<const Coefficients> frozen,
+                      std::span<const Coefficients> history, double c, double time, std::span<const Motion> guess) {
+  const Suspension suspension = freeze(s, d, frozen);
+  const auto r = suspension_forcing(suspension, s.scene.flows, time, s.scene.buoyancy.gravity, history);
+  SuspensionSolve result = solve(s, suspension, c, r, guess);
+  Advance a{{}, std::move(result.motions), result.iterations, result.residual};
+  for (std::size_t k = 0; k < history.size(); ++k)
+    a.positions.push_back({history[k].order, history[k].values + c * a.motions[k].velocity.values});
+  return a;
+}
+
+Advance globally_implicit(const Setting& s, const Dynamics& d, double dt) {
+  const auto x = positions(d);
+  return implicit_step(s, d, x, x, dt, d.time + dt, motions(d));
+}
+
+/// One step of backward Euler extrapolated from two half ones: how BDF2 starts.
+Advance extrapolated_euler(const Setting& s, const Dynamics& d, double dt) {
+  const auto x = positions(d);
+  const Advance whole = implicit_step(s, d, x, x, dt, d.time + dt, motions(d));
+  const Advance half = implicit_step(s, d, x, x, dt / 2, d.time + dt / 2, motions(d));
+  Advance last = implicit_step(s, d, half.positions, half.positions, dt / 2, d.time + dt, half.motions);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    last.positions[k].values = 2 * last.positions[k].values - whole.positions[k].values;
+  last.iterations += whole.iterations + half.iterations;
+  last.residual = std::max({whole.residual, half.residual, last.residual});
+  return last;
+}
+
+Advance bdf2(const Setting& s, const Dynamics& d, double dt) {
+  if (!d.history) return extrapolated_euler(s, d, dt);
   const double r = dt / d.dt_before;
-  const Coefficients frozen{v.position.order, v.position.values + r * v.displacement.values};
-  const Coefficients history{v.position.order, v.position.values + r * r / (1 + 2 * r) * v.displacement.values};
-  return implicit_step(s, v, material, frozen, history, dt * (1 + r) / (1 + 2 * r), d.time + dt, v.motion);
+  std::vector<Coefficients> frozen, history;
+  for (const VesicleDynamics& v : d.vesicles) {
+    frozen.push_back({v.position.order, v.position.values + r * v.displacement.values});
+    history.push_back({v.position.order, v.position.values + r * r / (1 + 2 * r) * v.displacement.values});
+  }
+  return implicit_step(s, d, frozen, history, dt * (1 + r) / (1 + 2 * r), d.time + dt, motions(d));
+}
+
+/// The three schemes that solve vesicle by vesicle: the bending and tension forces of the others are those of x_n, sigma_n.
+Advance block_scheme(const Setting& s, const Dynamics& d, double dt,
+                     Solve (*solve_self)(const Membrane&, double dt, const Coefficients& r, const Motion&, double)) {
+  const auto x = positions(d);
+  const Suspension suspension = freeze(s, d, x);
+  std::vector<Coefficients> r = suspension_forcing(suspension, s.scene.flows, d.time + dt, s.scene.buoyancy.gravity, x);
+  if (x.size() > 1) {
+    std::vector<Coefficients> tension;
+    for (std::size_t k = 0; k < x.size(); ++k)
+      tension.push_back(implicit_force(suspension.membranes[k], 0, d.vesicles[k].motion));
+    const std::vector<Coefficients> others = interaction_of(suspension, tension);
+    for (std::size_t k = 0; k < x.size(); ++k) r[k].values += others[k].values;
+  }
+  Advance a;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    Solve self = solve_self(suspension.membranes[k], dt, r[k], d.vesicles[k].motion, s.scene.numerics.gmres_tolerance);
+    require_converged("linear solver", self.converged, self.residual, self.iterations);
+    a.positions.push_back({x[k].order, x[k].values + dt * self.motion.velocity.values});
+    a.motions.push_back(std::move(self.motion));
+    a.iterations += self.iterations;
+    a.residual = std::max(a.residual, self.residual);
+  }
+  return a;
+}
+
+Advance block_implicit(const Setting& s, const Dynamics& d, double dt) {
+  return block_scheme(s, d, dt, solve_system);
+}
+
+Advance block_jacobi(const Setting& s, const Dynamics& d, double dt) {
+  return block_scheme(s, d, dt, [](const Membrane& m, double c, const Coefficients& r, const Motion& guess, double tolerance) {
+    const Solve tension = solve_tension(m, r, guess, tolerance);
+    if (!tension.converged) return tension;
+    Solve position = solve_position(m, c, r, tension.motion, tolerance);
+    position.iterations += tension.iterations;
+    return position;
+  });
+}
+
+Advance explicit_position(const Setting& s, const Dynamics& d, double dt) {
+  return block_scheme(s, d, dt, [](const Membrane& m, double, const Coefficients& r, const Motion& guess, double tolerance) {
+    return solve_tension(m, r, guess, tolerance);
+  });
 }
 
 double energy_of(Plans& plans, const Coefficients& x) {
@@ -113,6 +199,9 @@ const std::vector<CatalogueRow<SchemeFunction>>& scheme_catalogue() {
   static const std::vector<CatalogueRow<SchemeFunction>> table{
       {"bdf2", "second order, geometry extrapolated to the new time", {}, bdf2},
       {"globally-implicit", "first order, the paper's backward Euler", {}, globally_implicit},
+      {"block-implicit", "first order, the others' forces lag", {}, block_implicit},
+      {"block-jacobi", "first order, tension then implicit position", {}, block_jacobi},
+      {"explicit", "first order, tension then explicit position", {}, explicit_position},
   };
   return table;
 }
@@ -125,9 +214,7 @@ Setting make_setting(const Scene& scene, Plans& plans) {
 }
 
 Dynamics initial_dynamics(const Setting& s) {
-  if (s.scene.vesicles.size() != 1)
-    throw std::invalid_argument(fmt::format("the scene has {} vesicles; flows of exactly one can be computed so far",
-                                            s.scene.vesicles.size()));
+  if (s.scene.vesicles.empty()) throw std::invalid_argument("the scene has no vesicle");
   Dynamics d;
   d.dt_limit = s.scene.time.step;
   for (const VesicleParameters& parameters : s.scene.vesicles) {
@@ -151,77 +238,97 @@ Dynamics initial_dynamics(const Setting& s) {
     v.high_share = high_degree_share(v.position);
     d.vesicles.push_back(std::move(v));
   }
+  if (const Gap gap = smallest_gap(s.plans, positions(d)); gap.crossing)
+    throw std::invalid_argument(fmt::format("vesicles {} and {} overlap", gap.first, gap.second));
+  else if (gap.distance < s.scene.numerics.gap_floor)
+    throw std::invalid_argument(fmt::format("vesicles {} and {} are {:.3g} apart, less than numerics.gap_floor = {:.3g}",
+                                            gap.first, gap.second, gap.distance, s.scene.numerics.gap_floor));
   return d;
 }
 
-Step take_step(const Setting& s, const Dynamics& before, double dt) {
+namespace {
+
+/// Checks, correction, relabelling and renewal of one vesicle after its scheme has moved it.
+VesicleStep finish_vesicle(const Setting& s, VesicleDynamics& v, Coefficients position, Motion motion, double time) {
   const NumericsParameters& n = s.scene.numerics;
+  check_step(n, v.position, position, s.plans, v.energy);
+  v.displacement.values = position.values - v.position.values;
+  v.position = std::move(position);
+  v.motion = std::move(motion);
+  VesicleStep record;
+  if (n.correction) record.correction = correct(s, v);
+  if (relabelling_due(n.reparametrization, v) && relabel_vesicle(s, v)) {
+    record.relabelled = 1;
+    if (n.correction) record.correction = std::max(record.correction, correct(s, v));
+    if (labels_wound_up(v.labels)) {
+      v.labels = fresh_labels(v.labels.order);
+      ++v.labels_laid;
+      v.labels_laid_time = time;
+    }
+  }
+  v.energy = energy_of(s.plans, v.position);
+  if (n.upsampling == 0 && time >= v.upsampling_due) {
+    v.upsampling = upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
+    v.upsampling_due = time + 1;
+  }
+  const AreaVolume av = area_volume(s.plans.basis(v.position.order, measure_order(v.position.order)), v.position);
+  record.area_error = av.area / v.area - 1;
+  record.volume_error = av.volume / v.volume - 1;
+  record.energy = v.energy;
+  record.upsampling = v.upsampling;
+  record.tail = v.tail = curvature_tail(s.plans, v.position, v.upsampling * v.position.order);
+  return record;
+}
+
+}  // namespace
+
+Step take_step(const Setting& s, const Dynamics& before, double dt) {
   const SchemeFunction scheme = find_row(scheme_catalogue(), s.scene.time.scheme)->function;
   Step step{before, {}};
   Dynamics& d = step.dynamics;
+  StepRecord& record = step.record;
+  try {
+    Advance advance = scheme(s, before, dt);
+    d.time = before.time + dt;
+    record.vesicles.resize(d.vesicles.size());
+    parallel_for(int(d.vesicles.size()), [&](int k) {
+      record.vesicles[k] =
+          finish_vesicle(s, d.vesicles[k], std::move(advance.positions[k]), std::move(advance.motions[k]), d.time);
+    });
+    const Gap gap = smallest_gap(s.plans, positions(d));
+    if (gap.crossing || gap.distance < s.scene.numerics.gap_floor)
+      throw StepFailure(fmt::format("vesicles {} and {} {}", gap.first, gap.second,
+                                    gap.crossing ? "would cross" : fmt::format("would come within {:.2g}", gap.distance)));
+    record.gap = gap.distance;
+    record.iterations = advance.iterations;
+    record.residual = advance.residual;
+  } catch (const std::domain_error& error) {
+    throw StepFailure(error.what());
+  }
   d.step = before.step + 1;
-  d.time = before.time + dt;
-  step.record.step = double(d.step);
-  step.record.dt = dt;
-  step.record.gap = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < d.vesicles.size(); ++k) try {
-      VesicleDynamics& v = d.vesicles[k];
-      Advance advance = scheme(s, before, k, dt);
-      check_step(n, v.position, advance.position, s.plans, v.energy);
-      v.displacement.values = advance.position.values - v.position.values;
-      v.position = std::move(advance.position);
-      v.motion = std::move(advance.motion);
-      VesicleStep record;
-      if (n.correction) record.correction = correct(s, v);
-      if (relabelling_due(n.reparametrization, v) && relabel_vesicle(s, v)) {
-        record.relabelled = 1;
-        if (n.correction) record.correction = std::max(record.correction, correct(s, v));
-        if (labels_wound_up(v.labels)) {
-          v.labels = fresh_labels(v.labels.order);
-          ++v.labels_laid;
-          v.labels_laid_time = d.time;
-        }
-      }
-      v.energy = energy_of(s.plans, v.position);
-      if (n.upsampling == 0 && d.time >= v.upsampling_due) {
-        v.upsampling = upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
-        v.upsampling_due = d.time + 1;
-      }
-      const AreaVolume av = area_volume(s.plans.basis(v.position.order, measure_order(v.position.order)), v.position);
-      record.area_error = av.area / v.area - 1;
-      record.volume_error = av.volume / v.volume - 1;
-      record.energy = v.energy;
-      record.upsampling = v.upsampling;
-      record.tail = v.tail = curvature_tail(s.plans, v.position, v.upsampling * v.position.order);
-      step.record.iterations += advance.iterations;
-      step.record.residual = std::max(step.record.residual, advance.residual);
-      step.record.vesicles.push_back(record);
-    } catch (const std::domain_error& error) {
-      throw StepFailure(error.what());
-    }
   d.dt_before = dt;
   d.history = true;
-  step.record.time = d.time;
+  record.step = double(d.step);
+  record.dt = dt;
+  record.time = d.time;
   return step;
 }
 
 State evaluate(const Setting& s, const Dynamics& d) {
+  const auto x = positions(d);
+  const Suspension suspension = freeze(s, d, x);
+  const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity, x);
+  SuspensionSolve result = solve(s, suspension, 0, r, motions(d));
   State state{d.step, d.time, {}};
   for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
     const VesicleDynamics& v = d.vesicles[k];
-    const Membrane m =
-        freeze_membrane(s.plans, s.materials[k], v.position, v.upsampling, s.scene.numerics.source_order);
-    const Coefficients r = forcing(m, s.scene.flows, d.time, s.scene.buoyancy.gravity, v.position);
-    Solve solve = solve_system(m, 0, r, v.motion, s.scene.numerics.gmres_tolerance);
-    if (!solve.converged)
-      throw StepFailure(fmt::format("the velocity of vesicle {} could not be solved for (relative residual {:.1e})", k,
-                                    solve.residual));
+    const Membrane& m = suspension.membranes[k];
+    Motion& motion = result.motions[k];
     if (reduced_volume(v.area, v.volume) > 1 - 1e-9) {  // a sphere: only tensions of zero mean are determined
-      const Matrix sigma = m.bases.field.synthesize(solve.motion.tension).values;
-      solve.motion.tension.values(0, 0) -=
-          integrate(m.geometry, sigma.col(0)) / m.geometry.dA.sum() * std::sqrt(four_pi);
+      const Matrix sigma = m.bases.field.synthesize(motion.tension).values;
+      motion.tension.values(0, 0) -= integrate(m.geometry, sigma.col(0)) / m.geometry.dA.sum() * std::sqrt(four_pi);
     }
-    VesicleState out{v.position, solve.motion.velocity, solve.motion.tension, v.labels, v.tracers, v.saved_position,
+    VesicleState out{v.position, motion.velocity, motion.tension, v.labels, v.tracers, v.saved_position,
                      v.saved_velocity, v.relabelled, v.labels_laid, v.labels_laid_time};
     if (d.saves == 0) out.velocity_before = out.velocity;
     state.vesicles.push_back(std::move(out));

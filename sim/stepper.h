@@ -1,7 +1,11 @@
 // Time stepping: one step of the whole scene, by a scheme of the catalogue, with its checks, the area and volume
 // correction, reparametrization and the renewal of upsampling rates.
 //
-// globally-implicit: backward Euler (38), everything frozen at x_n; first order; the paper's scheme.
+// Of first order, everything frozen at x_n, section 3.4 of the paper:
+//   explicit           tension by (43), then x+ = x + dt/alpha (...); the others' forces and one's own motion lag
+//   block-jacobi       tension by (43), then the position implicitly by (44)
+//   block-implicit     both together, vesicle by vesicle; the others' forces lag
+//   globally-implicit  backward Euler (38) on the coupled system
 // bdf2: operators, normal and background flow at x* = x_n + w dt/dt_before, u+ = (x+ - h)/c. With r = dt/dt_before,
 //   h = x_n + r^2/(1+2r) w and c = dt (1+r)/(1+2r); second order for steps of any length. It starts with one step of
 //   extrapolated backward Euler, 2 x(two half steps) - x(one step).
@@ -9,6 +13,7 @@
 
 #include "diagnostics.h"
 #include "dynamics.h"
+#include "suspension.h"
 #include "trajectory.h"
 
 namespace sim {
@@ -18,10 +23,10 @@ struct StepFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A new position, its motion, and what the solver did.
+/// New positions, their motions, and what the solver did.
 struct Advance {
-  Coefficients position;
-  Motion motion;
+  std::vector<Coefficients> positions;
+  std::vector<Motion> motions;
   int iterations = 0;
   double residual = 0;
 };
@@ -34,8 +39,8 @@ struct Setting {
 };
 Setting make_setting(const Scene&, Plans&);
 
-/// Advances vesicle k by dt.
-using SchemeFunction = Advance (*)(const Setting&, const Dynamics&, std::size_t vesicle, double dt);
+/// Advances all vesicles by dt.
+using SchemeFunction = Advance (*)(const Setting&, const Dynamics&, double dt);
 const std::vector<CatalogueRow<SchemeFunction>>& scheme_catalogue();
 
 /// Initial state. Throws std::invalid_argument with one sentence when a vesicle cannot be made.

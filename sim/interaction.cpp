@@ -1,0 +1,237 @@
+#include "interaction.h"
+
+#include "parallel.h"
+#include "small_product.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace sim {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Order of the smooth source grid: q ~ p^(3/2).
+int smooth_order(int p, int wanted) { return std::max(p + 1, wanted > 0 ? wanted : int(std::ceil(std::pow(p, 1.5)))); }
+
+Sources make_sources(const Basis& basis, const Coefficients& x) {
+  const FirstDerivatives d = basis.first(x);
+  Sources s;
+  s.points = d.value;
+  s.normals.resize(basis.points(), 3);
+  s.area.resize(basis.points());
+  s.spacing.resize(basis.points());
+  const double step = pi / basis.latitudes();
+  for (Eigen::Index k = 0; k < basis.points(); ++k) {
+    const Vec3 t = d.t.row(k).transpose(), f = d.f.row(k).transpose();
+    const Vec3 n = t.cross(f) * basis.weights()[k] / basis.sin_theta()[k];
+    s.normals.row(k) = n.transpose();
+    s.area[k] = n.norm();
+    s.spacing[k] = step * std::max(t.norm(), f.norm() / basis.sin_theta()[k]);
+  }
+  s.low = s.points.colwise().minCoeff().transpose();
+  s.high = s.points.colwise().maxCoeff().transpose();
+  return s;
+}
+
+Vec3 direction(const Basis& basis, Eigen::Index k) {
+  const double t = basis.theta()[k % basis.latitudes()], f = basis.phi()[k / basis.latitudes()];
+  return {std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)};
+}
+
+double distance_to_box(const Vec3& x, const Vec3& low, const Vec3& high) {
+  return (low - x).cwiseMax(x - high).cwiseMax(0).norm();
+}
+
+/// Index of the source point nearest to x.
+Eigen::Index nearest_source(const Sources& s, const Vec3& x) {
+  Eigen::Index best = 0;
+  ((s.points.col(0).array() - x[0]).square() + (s.points.col(1).array() - x[1]).square() +
+   (s.points.col(2).array() - x[2]).square())
+      .minCoeff(&best);
+  return best;
+}
+
+}  // namespace
+
+Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positions, std::span<const Material> materials,
+                             const InteractionOptions& options) {
+  Interaction w;
+  const int n = int(positions.size());
+  if (n < 2) return w;
+  std::vector<const RotationPlan*> rotations;
+  for (int i = 0; i < n; ++i) {
+    const int p = positions[i].order;
+    w.source_basis.push_back(&plans.basis(p, smooth_order(p, options.source_order)));
+    w.target_basis.push_back(&plans.basis(p, p + 1));
+    rotations.push_back(&plans.rotation(p));
+    w.dual = w.dual || materials[i].viscosity_contrast != 1;
+  }
+  w.sources.resize(n);
+  w.targets.resize(n);
+  w.pairs.assign(n, std::vector<PairPlan>(n));
+  parallel_for(n, [&](int i) {
+    w.sources[i] = make_sources(*w.source_basis[i], positions[i]);
+    w.targets[i] = w.target_basis[i]->synthesize(positions[i]).values;
+  });
+  parallel_for(n * n, [&](int task) {
+    const int i = task / n, j = task % n;
+    if (i == j) return;
+    PairPlan& pair = w.pairs[i][j];
+    const Sources& s = w.sources[j];
+    const double reach = options.near_spacings * s.spacing.maxCoeff();
+    for (int k = 0; k < int(w.targets[i].rows()); ++k) {
+      const Vec3 x = w.targets[i].row(k).transpose();
+      if (options.near_rule && distance_to_box(x, s.low, s.high) < reach) {
+        const Eigen::Index source = nearest_source(s, x);
+        const double away = (s.points.row(source).transpose() - x).norm();
+        if (away < (options.near_spacings + 1) * s.spacing[source]) {
+          const NearestPoint nearest = nearest_point(positions[j], x, direction(*w.source_basis[j], source));
+          if (nearest.inside) throw std::domain_error(fmt::format("vesicle {} crosses vesicle {}", i, j));
+          if (nearest.distance < options.near_spacings * s.spacing[source]) {
+            pair.near.push_back(k);
+            pair.rows.push_back(near_row(*rotations[j], positions[j], x, nearest, options.near_order));
+            continue;
+          }
+        }
+      }
+      pair.far.push_back(k);
+    }
+  });
+  return w;
+}
+
+void add_direct_sum(const Sources& s, const Matrix& force, const Matrix* dual, const Matrix& points, Matrix& velocity) {
+  const Eigen::Index count = points.rows(), sources = s.points.rows();
+  // Weighted densities once; four targets a lane, sources in order: the result does not depend on how targets are split.
+  Matrix f(3, sources), u, n, y = s.points.transpose();
+  for (int d = 0; d < 3; ++d) f.row(d) = (force.col(d).array() * s.area.array() / (8 * pi)).matrix().transpose();
+  if (dual) {
+    u = dual->transpose();
+    n = s.normals.transpose() * (3 / (4 * pi));
+  }
+  for (Eigen::Index first = 0; first < count; first += lanes) {
+    Lane t[3] = {}, v[3] = {};
+    for (int lane = 0; lane < lanes; ++lane)
+      for (int d = 0; d < 3; ++d) t[d][lane] = points(std::min(first + lane, count - 1), d);
+    for (Eigen::Index k = 0; k < sources; ++k) {
+      const Lane r0 = t[0] - y(0, k), r1 = t[1] - y(1, k), r2 = t[2] - y(2, k);
+      const Lane rr = r0 * r0 + r1 * r1 + r2 * r2;
+      const Lane inverse = 1.0 / lane_sqrt(rr), inverse2 = inverse * inverse;
+      const Lane rf = (r0 * f(0, k) + r1 * f(1, k) + r2 * f(2, k)) * inverse2;
+      Lane along = rf * inverse;
+      if (dual) {
+        const Lane rn = r0 * n(0, k) + r1 * n(1, k) + r2 * n(2, k), ru = r0 * u(0, k) + r1 * u(1, k) + r2 * u(2, k);
+        along += rn * ru * inverse2 * inverse2 * inverse;
+      }
+      v[0] += f(0, k) * inverse + along * r0;
+      v[1] += f(1, k) * inverse + along * r1;
+      v[2] += f(2, k) * inverse + along * r2;
+    }
+    for (int lane = 0; lane < lanes && first + lane < count; ++lane)
+      for (int d = 0; d < 3; ++d) velocity(first + lane, d) += v[d][lane];
+  }
+}
+
+std::vector<Coefficients> induced_velocity(const Interaction& w, std::span<const Densities> densities) {
+  const int n = int(densities.size());
+  std::vector<Matrix> force(n), dual(n);
+  std::vector<Coefficients> result(n);
+  parallel_for(n, [&](int j) {
+    force[j] = w.source_basis[j]->synthesize(densities[j].force).values;
+    if (w.dual) dual[j] = w.source_basis[j]->synthesize(densities[j].dual).values;
+  });
+  parallel_for(n, [&](int i) {
+    Matrix velocity = Matrix::Zero(w.targets[i].rows(), 3);
+    for (int j = 0; j < n; ++j) {
+      if (i == j) continue;
+      const PairPlan& pair = w.pairs[i][j];
+      Matrix at(Eigen::Index(pair.far.size()), 3), sum = Matrix::Zero(at.rows(), 3);
+      for (std::size_t k = 0; k < pair.far.size(); ++k) at.row(k) = w.targets[i].row(pair.far[k]);
+      add_direct_sum(w.sources[j], force[j], w.dual ? &dual[j] : nullptr, at, sum);
+      for (std::size_t k = 0; k < pair.far.size(); ++k) velocity.row(pair.far[k]) += sum.row(k);
+      for (std::size_t k = 0; k < pair.near.size(); ++k) {
+        Vec3 v = apply_row(pair.rows[k].single, densities[j].force.values);
+        if (w.dual) v += apply_row(pair.rows[k].dual, densities[j].dual.values);
+        velocity.row(pair.near[k]) += v.transpose();
+      }
+    }
+    result[i] = w.target_basis[i]->analyze(velocity);
+  });
+  return result;
+}
+
+namespace {
+
+/// Solid angle of a surface at x over 4 pi: 1 inside, 0 outside; by the smooth rule, so right to about one half near it.
+double winding(const Sources& s, const Vec3& x) {
+  double sum = 0;
+  for (Eigen::Index k = 0; k < s.points.rows(); ++k) {
+    const Vec3 r = s.points.row(k).transpose() - x;
+    sum += s.normals.row(k).dot(r) / std::pow(r.squaredNorm(), 1.5);
+  }
+  return sum / (4 * pi);
+}
+
+}  // namespace
+
+Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
+  const int n = int(positions.size());
+  Gap best{std::numeric_limits<double>::infinity(), -1, -1, false};
+  if (n < 2) return best;
+  std::vector<const Basis*> bases;
+  std::vector<Sources> surfaces(n);
+  for (const Coefficients& x : positions) bases.push_back(&plans.basis(x.order, smooth_order(x.order, 0)));
+  parallel_for(n, [&](int i) { surfaces[i] = make_sources(*bases[i], positions[i]); });
+  std::vector<Gap> gaps(n, best);
+  parallel_for(n, [&](int i) {
+    for (int j = 0; j < i; ++j) {
+      const Sources &a = surfaces[i], &b = surfaces[j];
+      const Vec3 apart = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0);
+      if (apart.norm() >= gaps[i].distance) continue;
+      // Nearest pair of source points, then alternating projections onto the two spectral surfaces.
+      double nearest = std::numeric_limits<double>::infinity();
+      Eigen::Index at_a = 0, at_b = 0;
+      for (Eigen::Index k = 0; k < a.points.rows(); ++k) {
+        const Vec3 x = a.points.row(k).transpose();
+        if (distance_to_box(x, b.low, b.high) >= nearest) continue;
+        const Eigen::Index l = nearest_source(b, x);
+        const double d = (b.points.row(l).transpose() - x).norm();
+        if (d < nearest) nearest = d, at_a = k, at_b = l;
+      }
+      Gap gap{nearest, j, i, false};
+      if (nearest < 3 * std::max(a.spacing[at_a], b.spacing[at_b])) {
+        Vec3 x = a.points.row(at_a).transpose(), s = direction(*bases[i], at_a), t = direction(*bases[j], at_b);
+        for (int k = 0; k < 60; ++k) {
+          const NearestPoint on_b = nearest_point(positions[j], x, t);
+          const NearestPoint on_a = nearest_point(positions[i], on_b.position, s);
+          gap.crossing = on_b.inside || on_a.inside;
+          t = on_b.parameter;
+          s = on_a.parameter;
+          x = on_a.position;
+          const bool settled = std::abs(gap.distance - on_a.distance) < 1e-10;
+          gap.distance = on_a.distance;
+          if (settled || gap.crossing) break;
+        }
+      }
+      if (!gap.crossing && apart.isZero(0))  // boxes overlap: one may hold the other, or they may cross by far
+        gap.crossing = winding(b, a.points.row(0).transpose()) > 0.5 || winding(a, b.points.row(0).transpose()) > 0.5;
+      if (!gap.crossing)
+        for (Eigen::Index k = 0; k < a.points.rows() && !gap.crossing; k += 7)
+          if (distance_to_box(a.points.row(k).transpose(), b.low, b.high) == 0)
+            gap.crossing = winding(b, a.points.row(k).transpose()) > 0.9;
+      if (gap.crossing) gap.distance = 0;
+      if (gap.distance < gaps[i].distance) gaps[i] = gap;
+    }
+  });
+  for (const Gap& gap : gaps)
+    if (gap.distance < best.distance) best = gap;
+  return best;
+}
+
+}  // namespace sim

@@ -1,0 +1,69 @@
+// What vesicles do to one another: single and double layer of each, evaluated at the grid points of the others.
+//
+// Far targets: smooth quadrature on a source grid of order q ~ p^(3/2) (section 3.1.10), summed directly. Targets nearer
+// than four local source spacings: the near-singular rule of near.h, one row a target, assembled once per step.
+// Everything outside this file sees only "velocity at targets from densities on sources".
+#pragma once
+
+#include "membrane.h"
+#include "near.h"
+
+namespace sim {
+
+struct InteractionOptions {
+  int source_order = 0;      ///< q of the smooth rule; 0: p^(3/2), rounded up
+  bool near_rule = true;
+  NearOrder near_order;
+  double near_spacings = 4;  ///< targets nearer than this many local spacings take the near rule
+};
+
+/// Densities on one vesicle, degree p: force for the single layer, (1 - lambda) u for the double layer.
+struct Densities {
+  Coefficients force, dual;
+};
+
+/// A surface as the interaction sees it.
+struct Sources {
+  Matrix points, normals;   ///< points x 3; normals weighted by dA
+  Vector area;              ///< dA
+  Vector spacing;           ///< local distance of neighbouring source points
+  Vec3 low, high;           ///< bounding box
+};
+
+/// Targets of vesicle i that see vesicle j by the smooth rule, and those that need rows.
+struct PairPlan {
+  std::vector<int> far;
+  std::vector<int> near;
+  std::vector<PointRow> rows;
+};
+
+struct Interaction {
+  std::vector<const Basis*> source_basis, target_basis;
+  std::vector<Sources> sources;
+  std::vector<Matrix> targets;                ///< points x 3
+  std::vector<std::vector<PairPlan>> pairs;   ///< [target vesicle][source vesicle]
+  bool dual = false;                          ///< some viscosity contrast differs from 1
+};
+
+/// Throws std::domain_error when a target lies inside another vesicle.
+Interaction plan_interaction(Plans&, std::span<const Coefficients> positions, std::span<const Material>,
+                             const InteractionOptions&);
+
+/// Velocity that all other vesicles induce on each, projected on its degree.
+std::vector<Coefficients> induced_velocity(const Interaction&, std::span<const Densities>);
+
+/// Sum of the two kernels over one surface at points (count x 3), added to `velocity`: S with 1/(8 pi), D with +3/(4 pi).
+/// Densities are samples at the source points. The smooth rule alone.
+void add_direct_sum(const Sources&, const Matrix& force, const Matrix* dual, const Matrix& points, Matrix& velocity);
+
+/// Closest approach of two surfaces.
+struct Gap {
+  double distance = 0;
+  int first = -1, second = -1;  ///< the two vesicles
+  bool crossing = false;        ///< they overlap
+};
+/// Over all pairs; infinite for a single vesicle. Overlap is found by the solid angle of each surface at the points of
+/// the other, so also a vesicle wholly inside another is one.
+Gap smallest_gap(Plans&, std::span<const Coefficients> positions);
+
+}  // namespace sim

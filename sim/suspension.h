@@ -1,0 +1,46 @@
+// All vesicles at frozen positions, and the coupled system (40)-(42): the self blocks of membrane.h plus interactions.
+#pragma once
+
+#include "interaction.h"
+
+namespace sim {
+
+struct Suspension {
+  std::vector<Membrane> membranes;
+  Interaction interaction;
+};
+
+struct SuspensionOptions {
+  int source_order = 0;           ///< of the singular rule
+  InteractionOptions interaction;
+};
+
+/// Geometry and operators of all vesicles at x*.
+Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const Coefficients> positions,
+                             std::span<const int> upsamplings, const SuspensionOptions&);
+
+/// r of (39a) for every vesicle: background flow, and the velocities that the bending of the histories and buoyancy
+/// cause, one's own and the others'.
+std::vector<Coefficients> suspension_forcing(const Suspension&, std::span<const FlowParameters>, double time,
+                                             const Vec3& gravity, std::span<const Coefficients> histories);
+
+/// Velocity that known forces (per vesicle, degree p) on all vesicles induce on the others: the lagged interaction of the
+/// block schemes.
+std::vector<Coefficients> interaction_of(const Suspension&, std::span<const Coefficients> forces);
+
+enum class Preconditioner {
+  diagonal,  ///< the corrected diagonal of section 3.5
+  block,     ///< a loose GMRES solve of each self block
+};
+
+struct SuspensionSolve {
+  std::vector<Motion> motions;
+  int iterations = 0;
+  double residual = 0;
+  bool converged = false;
+};
+/// Solves the coupled system from a guess.
+SuspensionSolve solve_suspension(const Suspension&, double c, std::span<const Coefficients> forcing,
+                                 std::span<const Motion> guess, double tolerance, Preconditioner);
+
+}  // namespace sim

@@ -1,0 +1,144 @@
+// Cost of the parts of a step and of the whole. The limits: a step of one vesicle with viscosity contrast 10 takes at most
+// 5 ms at order 8 and 80 ms at order 16, on one core.
+#include "tests/sim/surfaces.h"
+
+#include <benchmark/benchmark.h>
+
+#include <fftw3.h>
+#include <omp.h>
+
+namespace {
+
+using namespace sim;
+
+constexpr auto unit = benchmark::kMillisecond;
+
+const VesicleParameters prolate(int order, double contrast) { return test::vesicle("prolate", 0.85, order, contrast); }
+
+/// S alone, or S and D.
+void assembly(benchmark::State& state, bool with_double) {
+  omp_set_num_threads(1);
+  const int p = int(state.range(0));
+  const LayerPotentials layers(p);
+  const Coefficients x = initial_position(prolate(p, 1));
+  for (auto _ : state) benchmark::DoNotOptimize(layers.assemble(x, with_double));
+}
+
+/// One product with S: 3 fields.
+void apply(benchmark::State& state) {
+  omp_set_num_threads(1);
+  const int p = int(state.range(0));
+  const Coefficients x = initial_position(prolate(p, 1));
+  const LayerMatrices m = LayerPotentials(p).assemble(x, false);
+  for (auto _ : state) benchmark::DoNotOptimize(m.single.apply(x));
+}
+
+/// Value and all derivatives of 3 fields of degree p on the 2p-grid.
+void synthesis(benchmark::State& state) {
+  const int p = int(state.range(0));
+  const Basis basis(p, 2 * p);
+  const Coefficients x = test::smooth_field(p, p, 3, 1);
+  for (auto _ : state) benchmark::DoNotOptimize(basis.second(x));
+}
+
+void analysis(benchmark::State& state) {
+  const int p = int(state.range(0));
+  const Basis basis(p, 2 * p);
+  const Matrix samples = basis.synthesize(test::smooth_field(p, p, 3, 1)).values;
+  for (auto _ : state) benchmark::DoNotOptimize(basis.analyze(samples));
+}
+
+/// The longitude half of a synthesis of one field of degree p on the p-grid, as a dense product ...
+void fourier_dense(benchmark::State& state) {
+  const int p = int(state.range(0)), nlat = p + 1, nlon = 2 * p + 2;
+  const Matrix spectrum = Matrix::Random(nlat, 2 * p + 1), table = Matrix::Random(2 * p + 1, nlon);
+  Matrix points(nlat, nlon);
+  for (auto _ : state) {
+    points.noalias() = spectrum * table;
+    benchmark::DoNotOptimize(points.data());
+  }
+}
+
+/// ... and as FFTW's real transforms, with the copy into its order of coefficients.
+void fourier_fftw(benchmark::State& state) {
+  const int p = int(state.range(0)), nlat = p + 1, nlon = 2 * p + 2;
+  const Matrix spectrum = Matrix::Random(nlat, 2 * p + 1);
+  Matrix scratch(nlat, nlon), points(nlat, nlon);
+  const fftw_iodim dimension{nlon, nlat, nlat}, many{nlat, 1, 1};
+  const fftw_r2r_kind kind = FFTW_HC2R;
+  const fftw_plan plan = fftw_plan_guru_r2r(1, &dimension, 1, &many, scratch.data(), points.data(), &kind,
+                                            FFTW_ESTIMATE | FFTW_UNALIGNED);
+  for (auto _ : state) {
+    scratch.setZero();
+    scratch.col(0) = spectrum.col(0);
+    for (int m = 1; m <= p; ++m) {
+      scratch.col(m) = 0.5 * spectrum.col(m);
+      scratch.col(nlon - m) = -0.5 * spectrum.col(p + m);
+    }
+    fftw_execute_r2r(plan, scratch.data(), points.data());
+    benchmark::DoNotOptimize(points.data());
+  }
+  fftw_destroy_plan(plan);
+}
+
+/// The linear solve of a step of 0.1 from a zero guess, operators given.
+void solve(benchmark::State& state) {
+  omp_set_num_threads(1);
+  const int p = int(state.range(0));
+  Plans plans;
+  const Coefficients x = initial_position(prolate(p, 10));
+  const Membrane m = freeze_membrane(plans, {10, 0.01, 0}, x, 3, 0);
+  const std::vector flows{test::shear()};
+  const Coefficients r = forcing(m, flows, 0, Vec3::Zero(), x);
+  int iterations = 0;
+  for (auto _ : state) iterations = solve_system(m, 0.1, r, test::at_rest(p), 1e-10).iterations;
+  state.counters["iterations"] = iterations;
+}
+
+/// Steps of 0.1 of a vesicle in shear, from rest on: what a run costs without its saved states.
+void step(benchmark::State& state, double contrast) {
+  omp_set_num_threads(1);
+  const int p = int(state.range(0));
+  Plans plans;
+  const Scene scene = test::shear_scene(prolate(p, contrast), 0.1, 1e9);
+  const Setting s = make_setting(scene, plans);
+  Dynamics d = take_step(s, initial_dynamics(s), 0.1).dynamics;  // makes the plans
+  double iterations = 0, relabelled = 0;
+  for (auto _ : state) {
+    Step next = take_step(s, d, 0.1);
+    iterations += next.record.iterations;
+    relabelled += next.record.vesicles[0].relabelled;
+    d = std::move(next.dynamics);
+  }
+  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+  state.counters["relabelled"] = benchmark::Counter(relabelled, benchmark::Counter::kAvgIterations);
+}
+
+/// Velocity and tension of a state to be saved.
+void evaluation(benchmark::State& state) {
+  omp_set_num_threads(1);
+  const int p = int(state.range(0));
+  Plans plans;
+  const Scene scene = test::shear_scene(prolate(p, 10), 0.1, 1e9);
+  const Setting s = make_setting(scene, plans);
+  const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 2);
+  for (auto _ : state) benchmark::DoNotOptimize(evaluate(s, d));
+}
+
+}  // namespace
+
+#define ORDERS DenseRange(8, 16, 4)->Arg(24)->Unit(unit)
+BENCHMARK_CAPTURE(assembly, S, false)->ORDERS;
+BENCHMARK_CAPTURE(assembly, S_and_D, true)->ORDERS;
+BENCHMARK(apply)->ORDERS;
+BENCHMARK(synthesis)->ORDERS;
+BENCHMARK(analysis)->ORDERS;
+BENCHMARK(fourier_dense)->DenseRange(8, 64, 8)->Unit(benchmark::kMicrosecond);
+BENCHMARK(fourier_fftw)->DenseRange(8, 64, 8)->Unit(benchmark::kMicrosecond);
+BENCHMARK(solve)->ORDERS;
+// 100 steps: three quarters of a half turn, relabellings and renewals of the upsampling rate among them.
+BENCHMARK_CAPTURE(step, contrast_1, 1.0)->Arg(8)->Arg(16)->Iterations(100)->Unit(unit);
+BENCHMARK_CAPTURE(step, contrast_10, 10.0)->Arg(8)->Arg(16)->Iterations(100)->Unit(unit);
+BENCHMARK(evaluation)->Arg(8)->Arg(16)->Unit(unit);
+
+BENCHMARK_MAIN();
