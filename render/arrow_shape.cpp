@@ -35,4 +35,21 @@ ArrowShape arrow_shape() {
   return shape;
 }
 
+ArrowShape bead_shape() {
+  constexpr int rings = arrow_shape_sides / 2;
+  constexpr float step = std::numbers::pi_v<float> / rings;
+  ArrowShape shape;
+  const auto put = [&](int i, int j) {
+    const float t = step * static_cast<float>(i), f = step * static_cast<float>(j);
+    shape.position.emplace_back(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t));
+  };
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < arrow_shape_sides; ++j) {
+      put(i, j), put(i + 1, j), put(i + 1, j + 1);
+      put(i, j), put(i + 1, j + 1), put(i, j + 1);
+    }
+  shape.normal = shape.position;
+  return shape;
+}
+
 }  // namespace render

@@ -1,4 +1,4 @@
-// The arrow of the flow field as triangles.
+// The arrow of the flow field, and the bead of a fluid at rest, as triangles.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -16,5 +16,9 @@ struct ArrowShape {
   std::vector<glm::vec3> position, normal;
 };
 ArrowShape arrow_shape();
+
+inline constexpr int bead_shape_vertices = arrow_shape_sides * (arrow_shape_sides / 2) * 6;
+/// A sphere of radius 1; normal = position.
+ArrowShape bead_shape();
 
 }  // namespace render

@@ -141,6 +141,7 @@ Camera make_camera(const Framing& framing, const dvec3& centroid) {
   camera.half_height = framing.half_height;
   camera.half_width = framing.half_height * framing.aspect;
   camera.perspective = framing.perspective;
+  camera.follows = framing.follows;
 
   const double reach = 4 * (framing.depth + framing.half_height * std::max(1.0, framing.aspect));
   const double distance = framing.perspective ? framing.distance : 2 * reach;

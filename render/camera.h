@@ -59,6 +59,7 @@ struct Camera {
   glm::dvec3 target{0};     ///< in the middle of the picture
   double half_width = 1, half_height = 1;  ///< of the picture in the plane of the target
   bool perspective = true;
+  bool follows = false;  ///< moves with the vesicles
 
   /// Where a point of the scene is seen: -1..1 from left to right and from bottom to top.
   glm::dvec2 picture_place(const glm::dvec3& point) const;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double tracer_radius = 0.088;                          // area radii
 constexpr double longest_arrow = 0.21, arrow_thickness = 0.009;  // half heights of the picture
-constexpr double weakest_arrow = 0.06;                           // of the longest; shorter ones are left out
+constexpr double weakest_arrow = 0.10;                           // of the longest; shorter ones are left out
 
 glm::vec3 vector_of(const Colour& c) { return {c.r, c.g, c.b}; }
 
@@ -29,7 +29,7 @@ float samples(const ViewParameters& view, double px, double least) {
 
 // The membranes as the picture shows them: points in half heights of the picture, dense enough for distances to them.
 std::vector<glm::dvec2> shadows(const Frame& frame) {
-  constexpr int stride = 3;  // of the mesh: 32 x 64 points
+  constexpr int stride = 2;  // of the mesh: 48 x 96 points
   std::vector<glm::dvec2> places;
   for (const Body& body : frame.bodies) {
     const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
@@ -45,7 +45,7 @@ std::vector<glm::dvec2> shadows(const Frame& frame) {
 // 0 when the segment touches a membrane's shadow, 1 when it is well away: half an arrow beside a contour looks like
 // something that belongs to the vesicle.
 double clear_of_bodies(const std::vector<glm::dvec2>& shadows, const glm::dvec2& tail, const glm::dvec2& tip) {
-  constexpr double near = 0.05, far = 0.11;  // half heights
+  constexpr double near = 0.02, far = 0.045;  // half heights
   const glm::dvec2 along = tip - tail;
   const double length2 = std::max(glm::dot(along, along), 1e-12);
   double nearest2 = far * far;
@@ -85,10 +85,12 @@ Renderer::Renderer(const GlChoice& choice, std::filesystem::path shader_dir)
       shader_dir_(std::move(shader_dir)),
       nothing_(context_.gl()),
       bodies_(context_.gl()),
-      arrows_(context_.gl()) {
-  const ArrowShape shape = arrow_shape();
-  arrows_.attribute(0, shape.position);
-  arrows_.attribute(1, shape.normal);
+      arrows_(context_.gl()),
+      beads_(context_.gl()) {
+  for (const auto& [array, shape] : {std::pair{&arrows_, arrow_shape()}, std::pair{&beads_, bead_shape()}}) {
+    array->attribute(0, shape.position);
+    array->attribute(1, shape.normal);
+  }
 }
 
 // Programs and buffers are about to be freed, and must be freed in their own context.
@@ -155,7 +157,10 @@ void Renderer::draw_arrows(const Frame& frame) {
   if (!frame.view.flow_arrows || flow.points.rows() == 0) return;
   double fastest = flow.reference_speed;
   if (fastest <= 0) fastest = flow.velocities.rowwise().norm().maxCoeff();
-  if (!(fastest > 0) || !std::isfinite(fastest)) return;
+  if (!std::isfinite(fastest)) return;
+  const bool rests = fastest <= 0;
+  if (rests && !frame.camera.follows) return;
+
   const Camera& camera = frame.camera;
   const std::vector<glm::dvec2> bodies = shadows(frame);
   const auto place_of = [&](const glm::dvec3& point) {
@@ -164,9 +169,9 @@ void Renderer::draw_arrows(const Frame& frame) {
   std::vector<glm::vec4> starts;
   std::vector<glm::vec3> vectors;
   for (Eigen::Index i = 0; i < flow.points.rows(); ++i) {
-    const glm::dvec3 v = to_glm(flow.velocities.row(i)) / fastest, middle = to_glm(flow.points.row(i));
-    if (!(glm::length(v) >= weakest_arrow)) continue;
-    const glm::dvec3 arrow = v * longest_arrow * camera.half_height;
+    const glm::dvec3 v = rests ? glm::dvec3(0) : to_glm(flow.velocities.row(i)) / fastest;
+    const glm::dvec3 middle = to_glm(flow.points.row(i)), arrow = v * longest_arrow * camera.half_height;
+    if (!rests && !(glm::length(v) >= weakest_arrow)) continue;
     const double shown = clear_of_captions(camera.picture_place(middle)) *
                          clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
     if (shown <= 0) continue;
@@ -175,16 +180,19 @@ void Renderer::draw_arrows(const Frame& frame) {
   }
   if (starts.empty()) return;
   const Gl& gl = context_.gl();
-  const Program& p = program("arrow", "");
+  const Program& p = program("arrow", rests ? "#define BEAD\n" : "");
   p.use();
-  set_camera(p, frame.camera);
-  p.set("u_colour", linear(arrow_colour));
+  set_camera(p, camera);
   set_ground(p, frame);
+  p.set("u_colour", linear(arrow_colour));
   p.set("u_height", static_cast<float>(framebuffer_->height()));
-  p.set("u_thickness", static_cast<float>(arrow_thickness * frame.camera.half_height));
-  arrows_.attribute(2, starts, 1);
-  arrows_.attribute(3, vectors, 1);
-  gl.DrawArraysInstanced(GL_TRIANGLES, 0, arrow_shape_vertices, static_cast<GLsizei>(starts.size()));
+  p.set("u_thickness", static_cast<float>(arrow_thickness * camera.half_height));
+  VertexArray& shape = rests ? beads_ : arrows_;
+  shape.attribute(2, starts, 1);
+  if (!rests) shape.attribute(3, vectors, 1);
+  shape.bind();
+  gl.DrawArraysInstanced(GL_TRIANGLES, 0, rests ? bead_shape_vertices : arrow_shape_vertices,
+                         static_cast<GLsizei>(starts.size()));
   gl.Clear(GL_DEPTH_BUFFER_BIT);  // arrows stand behind everything, though the plane they show goes through the vesicles
 }
 

@@ -41,7 +41,7 @@ class Renderer {
   GlContext context_;
   std::filesystem::path shader_dir_;
   std::map<std::string, Program> programs_;  ///< by name and defines
-  VertexArray nothing_, bodies_, arrows_;
+  VertexArray nothing_, bodies_, arrows_, beads_;
   std::shared_ptr<const MeshPlan> uploaded_plan_;
   std::optional<Framebuffer> framebuffer_;
   Image samples_;

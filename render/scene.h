@@ -13,7 +13,8 @@ struct Body {
   Colour colour = body_colours[0];
 };
 
-/// Background velocity at arrow_points(), sampled by whoever knows the flow.
+/// Background velocity at arrow_points(), sampled by whoever knows the flow. Where everything rests, a camera that follows
+/// shows beads at rest instead, or nothing would tell that it moves.
 struct FlowArrows {
   sim::Matrix points;      ///< count x 3
   sim::Matrix velocities;  ///< count x 3

@@ -116,9 +116,12 @@ void add_direct_sum(const Sources& s, const Matrix& force, const Matrix* dual, c
     n = s.normals.transpose() * (3 / (4 * pi));
   }
   for (Eigen::Index first = 0; first < count; first += lanes) {
-    Lane t[3] = {}, v[3] = {};
-    for (int lane = 0; lane < lanes; ++lane)
-      for (int d = 0; d < 3; ++d) t[d][lane] = points(std::min(first + lane, count - 1), d);
+    Lane t[3], v[3] = {};
+    for (int d = 0; d < 3; ++d) {
+      double x[lanes];
+      for (int lane = 0; lane < lanes; ++lane) x[lane] = points(std::min(first + lane, count - 1), d);
+      __builtin_memcpy(&t[d], x, sizeof x);
+    }
     for (Eigen::Index k = 0; k < sources; ++k) {
       const Lane r0 = t[0] - y(0, k), r1 = t[1] - y(1, k), r2 = t[2] - y(2, k);
       const Lane rr = r0 * r0 + r1 * r1 + r2 * r2;
