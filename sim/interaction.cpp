@@ -183,6 +183,70 @@ double winding(const Sources& s, const Vec3& x) {
 
 }  // namespace
 
+namespace {
+
+/// Two parameters on two surfaces, and Newton for the least distance between them.
+struct Approach {
+  Vec3 s, t;  ///< parameters on the first and the second surface
+  double distance = 0;
+};
+
+/// Gradient of |x - y|^2 / 2 in tangent coordinates q about (s, t).
+struct ApproachSlope {
+  const Coefficients &x, &y;
+  Vec3 s, t, a1, a2, b1, b2;
+  ApproachSlope(const Coefficients& first, const Coefficients& second, const Approach& at)
+      : x(first), y(second), s(at.s), t(at.t), a1(s.unitOrthogonal()), a2(s.cross(a1)), b1(t.unitOrthogonal()),
+        b2(t.cross(b1)) {}
+  Approach moved(const Eigen::Vector4d& q) const {
+    Approach m{(s + q[0] * a1 + q[1] * a2).normalized(), (t + q[2] * b1 + q[3] * b2).normalized(), 0};
+    m.distance = (sample_points(x, m.s.transpose()) - sample_points(y, m.t.transpose())).norm();
+    return m;
+  }
+  double half_square(const Eigen::Vector4d& q) const { return 0.5 * std::pow(moved(q).distance, 2); }
+};
+
+/// Newton with differences for slope and curvature; a step that does not come nearer is halved.
+Approach nearest_approach(const Coefficients& x, const Coefficients& y, Approach at) {
+  at = ApproachSlope(x, y, at).moved(Eigen::Vector4d::Zero());
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const ApproachSlope f(x, y, at);
+    constexpr double h = 1e-4;  // rounding 1e-16/h^2 and truncation h^2 both leave eight digits in the curvature
+    Eigen::Vector4d slope;
+    Eigen::Matrix4d curvature;
+    const double centre = f.half_square(Eigen::Vector4d::Zero());
+    for (int a = 0; a < 4; ++a) {
+      const Eigen::Vector4d e = h * Eigen::Vector4d::Unit(a);
+      const double plus = f.half_square(e), minus = f.half_square(-e);
+      slope[a] = (plus - minus) / (2 * h);
+      curvature(a, a) = (plus - 2 * centre + minus) / (h * h);
+      for (int b = 0; b < a; ++b) {
+        const Eigen::Vector4d d = h * Eigen::Vector4d::Unit(b);
+        curvature(a, b) = curvature(b, a) =
+            (f.half_square(e + d) - f.half_square(e - d) - f.half_square(d - e) + f.half_square(-e - d)) / (4 * h * h);
+      }
+    }
+    // Directions of negative or no curvature are walked down by their size.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(curvature);
+    const Eigen::Vector4d size = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-6 * eigen.eigenvalues().cwiseAbs().maxCoeff());
+    Eigen::Vector4d step = -eigen.eigenvectors() * (eigen.eigenvectors().transpose() * slope).cwiseQuotient(size);
+    if (step.norm() > 0.2) step *= 0.2 / step.norm();
+    bool nearer = false;
+    for (int half = 0; half < 20 && !nearer; ++half, step /= 2) {
+      const Approach trial = f.moved(step);
+      if (trial.distance < at.distance) {
+        nearer = at.distance - trial.distance > 1e-14 * at.distance;
+        at = trial;
+        if (!nearer) return at;
+      }
+    }
+    if (!nearer) break;
+  }
+  return at;
+}
+
+}  // namespace
+
 Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
   const int n = int(positions.size());
   Gap best{std::numeric_limits<double>::infinity(), -1, -1, false};
@@ -197,7 +261,7 @@ Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
       const Sources &a = surfaces[i], &b = surfaces[j];
       const Vec3 apart = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0);
       if (apart.norm() >= gaps[i].distance) continue;
-      // Nearest pair of source points, then alternating projections onto the two spectral surfaces.
+      // Nearest pair of source points, then Newton on the two spectral surfaces.
       double nearest = std::numeric_limits<double>::infinity();
       Eigen::Index at_a = 0, at_b = 0;
       for (Eigen::Index k = 0; k < a.points.rows(); ++k) {
@@ -209,18 +273,11 @@ Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
       }
       Gap gap{nearest, j, i, false};
       if (nearest < 3 * std::max(a.spacing[at_a], b.spacing[at_b])) {
-        Vec3 x = a.points.row(at_a).transpose(), s = direction(*bases[i], at_a), t = direction(*bases[j], at_b);
-        for (int k = 0; k < 60; ++k) {
-          const NearestPoint on_b = nearest_point(positions[j], x, t);
-          const NearestPoint on_a = nearest_point(positions[i], on_b.position, s);
-          gap.crossing = on_b.inside || on_a.inside;
-          t = on_b.parameter;
-          s = on_a.parameter;
-          x = on_a.position;
-          const bool settled = std::abs(gap.distance - on_a.distance) < 1e-10;
-          gap.distance = on_a.distance;
-          if (settled || gap.crossing) break;
-        }
+        const Approach approach = nearest_approach(
+            positions[i], positions[j], {direction(*bases[i], at_a), direction(*bases[j], at_b), nearest});
+        const Vec3 x = sample_points(positions[i], approach.s.transpose()).row(0).transpose();
+        gap.distance = approach.distance;
+        gap.crossing = nearest_point(positions[j], x, approach.t).inside;
       }
       if (!gap.crossing && apart.isZero(0))  // boxes overlap: one may hold the other, or they may cross by far
         gap.crossing = winding(b, a.points.row(0).transpose()) > 0.5 || winding(a, b.points.row(0).transpose()) > 0.5;

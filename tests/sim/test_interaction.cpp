@@ -1,0 +1,254 @@
+#include "surfaces.h"
+
+#include <catch2/catch.hpp>
+
+#include <omp.h>
+
+using namespace sim;
+using test::pi;
+
+namespace {
+
+/// A target at `gap` outside (or inside, negative) the surface point of a parameter, with its nearest point.
+struct Target {
+  Vec3 x;
+  NearestPoint nearest;
+};
+
+std::vector<Target> targets(const Coefficients& x, double gap) {
+  const Basis basis(x.order, x.order + 3);
+  const Geometry g = geometry(basis, x);
+  std::vector<Target> all;
+  for (int k = 3; k < basis.points(); k += 23) {
+    const double t = basis.theta()[k % basis.latitudes()], f = basis.phi()[k / basis.latitudes()];
+    const Vec3 at = g.x.value.row(k).transpose() + gap * g.n.row(k).transpose();
+    all.push_back({at, nearest_point(x, at, Vec3(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)))});
+  }
+  return all;
+}
+
+/// Largest relative errors of S and D of the position against a much finer rule.
+std::pair<double, double> near_errors(const Coefficients& x, double gap, NearOrder order) {
+  const RotationPlan plan(x.order);
+  double single = 0, dual = 0;
+  for (const Target& t : targets(x, gap)) {
+    const PointRow row = near_row(plan, x, t.x, t.nearest, order), exact = near_row(plan, x, t.x, t.nearest, {220, 300});
+    const Vec3 s = apply_row(exact.single, x.values);
+    single = std::max(single, (apply_row(row.single, x.values) - s).norm() / s.norm());
+    dual = std::max(dual, (apply_row(row.dual, x.values) - apply_row(exact.dual, x.values)).norm() / 0.5);
+  }
+  return {single, dual};
+}
+
+Scene pair_scene(const Vec3& centre, double step, double lambda = 10, std::string scheme = "bdf2", int order = 6) {
+  VesicleParameters v = test::vesicle("prolate", 0.9, order, lambda);
+  v.center = -centre;
+  Scene scene = test::shear_scene(v, step, 1, std::move(scheme));
+  v.center = centre;
+  scene.vesicles.push_back(v);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("turning a field to the pole and back leaves it, and its value at the pole is that at the point") {
+  const RotationPlan plan(9);
+  const Coefficients c = test::smooth_field(9, 9, 2, 3);
+  const double theta = 0.8, phi = 2.3;
+  const Matrix turned = plan.to_pole(c.values, theta, phi);
+  CHECK((plan.from_pole(turned, theta, phi) - c.values).norm() < 1e-13);  // orthogonal: the transpose is the inverse
+  const Vec3 s(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+  CHECK((sample_points({9, turned}, Vec3::UnitZ().transpose()) - sample_points(c, s.transpose())).norm() < 1e-13);
+}
+
+TEST_CASE("the nearest point of an ellipsoid is found from outside and from inside") {
+  const Coefficients x = test::ellipsoid({1.5, 1, 0.7}, 4);
+  for (const double gap : {0.3, 0.01, -0.01})
+    for (const Target& t : targets(x, gap)) {
+      CHECK(t.nearest.distance == Approx(std::abs(gap)).epsilon(1e-9));
+      CHECK(t.nearest.inside == (gap < 0));
+    }
+}
+
+TEST_CASE("the near rule meets 1e-5 at a gap of 0.01 and 1e-4 at 0.001, on the prolate at 48 x 64") {
+  const Coefficients x = test::surface("prolate", 0.85, 8);
+  for (const auto& [gap, bound] : {std::pair{1e-1, 1e-8}, {1e-2, 1e-5}, {1e-3, 1e-4}}) {
+    const auto [single, dual] = near_errors(x, gap, {48, 64});
+    CHECK(single < bound);
+    CHECK(dual < bound);
+  }
+}
+
+TEST_CASE("the near rule meets the same bounds on the biconcave disc at 96 x 160") {
+  const Coefficients x = test::surface("biconcave", 0.65, 8);
+  for (const auto& [gap, bound] : {std::pair{1e-2, 1e-5}, {1e-3, 1e-4}}) {
+    const auto [single, dual] = near_errors(x, gap, {96, 160});
+    CHECK(single < bound);
+    CHECK(dual < bound);
+  }
+}
+
+TEST_CASE("the double layer of a constant is 0 just outside and -1 just inside") {
+  const Coefficients x = test::surface("prolate", 0.85, 8), one = test::constant_field(8, {1, -2, 0.5});
+  const RotationPlan plan(8);
+  for (const double gap : {1e-1, 1e-3, -1e-1, -1e-3})
+    for (const Target& t : targets(x, gap)) {
+      const Vec3 u = apply_row(near_row(plan, x, t.x, t.nearest, {48, 64}).dual, one.values);
+      const Vec3 expected = gap > 0 ? Vec3(Vec3::Zero()) : Vec3(-1, 2, -0.5);
+      CHECK((u - expected).norm() < 1e-5);
+    }
+}
+
+TEST_CASE("Green's identity: a Stokes flow from within gives S[traction] - D[u] of its own values outside, near and far") {
+  // With f = traction of the exterior flow on the surface, exterior u = -S[f] + D[u] in the signs of conventions.md;
+  // for a translating sphere f = -3/(2a) U is constant and D[U] vanishes outside: u = (3/2) S[U].
+  const Coefficients x = test::surface("sphere", 1, 8), f = test::constant_field(8, {1.5, 0, 0});
+  const RotationPlan plan(8);
+  for (const double gap : {0.5, 0.05, 1e-3})
+    for (const Target& t : targets(x, gap)) {
+      const double r = t.x.norm();
+      const Vec3 e = t.x / r, U(1, 0, 0);
+      const Vec3 stokes = 0.75 / r * (U + e * e.dot(U)) + 0.25 / (r * r * r) * (U - 3 * e * e.dot(U));
+      CHECK((apply_row(near_row(plan, x, t.x, t.nearest, {48, 64}).single, f.values) - stokes).norm() < 1e-5);
+    }
+}
+
+TEST_CASE("the smooth rule and the near rule agree where both are accurate") {
+  Plans plans;
+  std::vector<Coefficients> x;
+  for (const double side : {-1.0, 1.0}) {
+    VesicleParameters v = test::vesicle("prolate", 0.85, 8);
+    v.center = {0, 0, side * 1.1};
+    x.push_back(initial_position(v));
+  }
+  const std::vector<Material> materials(2, {5, 0.01, 0});
+  const std::vector<Densities> densities{{test::smooth_field(8, 5, 3, 1), test::smooth_field(8, 5, 3, 2)},
+                                         {test::smooth_field(8, 5, 3, 3), test::smooth_field(8, 5, 3, 4)}};
+  const auto velocity = [&](double spacings, int order) {
+    return induced_velocity(plan_interaction(plans, x, materials, {order, true, {48, 64}, spacings}), densities);
+  };
+  const auto near = velocity(100, 0), smooth = velocity(0, 60);
+  for (int k = 0; k < 2; ++k)
+    CHECK((near[k].values - smooth[k].values).norm() < 1e-7 * near[k].values.norm());
+}
+
+TEST_CASE("two sinking spheres far apart follow the method of reflections with an error of fourth order") {
+  // Side by side 1 + (3/4) a/r + (1/2)(a/r)^3; in line 1 + (3/2) a/r - (a/r)^3; what is left out begins at (a/r)^4.
+  const auto excess = [](double r, const Vec3& along) {
+    Plans plans;
+    Scene scene;
+    scene.time.step = 0.1;
+    scene.buoyancy.gravity = {0, 0, -1};
+    for (const double side : {-0.5, 0.5}) {
+      VesicleParameters v = test::vesicle("sphere", 1, 6, 2);
+      v.density_difference = 4.5;  // U0 = 1
+      v.center = side * r * along;
+      scene.vesicles.push_back(v);
+    }
+    const Setting s = make_setting(scene, plans);
+    const State state = evaluate(s, initial_dynamics(s));
+    const double u = -state.vesicles[0].velocity.values(0, 2) / std::sqrt(4 * pi);  // mean over the sphere
+    const double a = 1 / r;
+    const double theory = along[2] == 0 ? 1 + 0.75 * a + 0.5 * a * a * a : 1 + 1.5 * a - a * a * a;
+    return std::abs(u - theory);
+  };
+  for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
+    CHECK(excess(16, along) < 10 * std::pow(1.0 / 16, 4));
+    CHECK(excess(16, along) < excess(8, along) / 8);  // at least third order in 1/r; fourth in theory
+  }
+}
+
+TEST_CASE("identical vesicles at x and -x stay point-symmetric") {
+  Plans plans;
+  const Scene scene = pair_scene({1.3, 0, -0.6}, 0.1);
+  const Setting s = make_setting(scene, plans);
+  const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 5);
+  const Matrix dots = tracer_directions();
+  const Matrix a = sample_points(d.vesicles[0].position, dots), b = sample_points(d.vesicles[1].position, -dots);
+  CHECK((a + b).norm() < 1e-8);  // GMRES at 1e-10, five steps
+}
+
+TEST_CASE("all schemes agree to first order in the step on one vesicle") {
+  const auto position = [](const char* scheme, double dt) {
+    Plans plans;
+    Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 6, 1), dt, 1, scheme);
+    scene.numerics.correction = false;
+    scene.numerics.reparametrization = "off";
+    const Setting s = make_setting(scene, plans);
+    return Matrix(test::advanced(s, initial_dynamics(s), dt, int(std::lround(0.2 / dt))).vesicles[0].position.values);
+  };
+  const Matrix exact = position("bdf2", 0.01);
+  for (const char* scheme : {"explicit", "block-jacobi", "block-implicit", "globally-implicit"}) {
+    const double coarse = (position(scheme, 0.05) - exact).norm(), fine = (position(scheme, 0.025) - exact).norm();
+    INFO(scheme);
+    CHECK(coarse < 0.05);
+    CHECK(coarse / fine == Approx(2).margin(0.5));
+  }
+}
+
+TEST_CASE("block and global solves agree when vesicles are far apart, and differ more as the gap closes") {
+  const auto difference = [](double distance) {
+    Plans plans;
+    std::vector<Matrix> x;
+    for (const char* scheme : {"block-implicit", "globally-implicit"}) {
+      const Scene scene = pair_scene({0, 0, distance / 2}, 0.1, 10, scheme);
+      const Setting s = make_setting(scene, plans);
+      x.push_back(test::advanced(s, initial_dynamics(s), 0.1, 1).vesicles[0].position.values);
+    }
+    return (x[0] - x[1]).norm() / x[1].norm();
+  };
+  const double far = difference(20), middle = difference(3), close = difference(1.8);
+  CHECK(far < 1e-4);
+  CHECK(middle > 3 * far);
+  CHECK(close > 2 * middle);
+}
+
+TEST_CASE("with the block preconditioner the coupled solve takes single digits on vesicles far apart") {
+  Plans plans;
+  Scene scene = pair_scene({0, 0, 5}, 0.1, 10, "globally-implicit");
+  scene.numerics.preconditioner = "block";
+  scene.numerics.gmres_tolerance = 1e-8;
+  const Setting s = make_setting(scene, plans);
+  CHECK(take_step(s, initial_dynamics(s), 0.1).record.iterations < 10);
+}
+
+TEST_CASE("gaps are measured between the surfaces, not between grid points") {
+  Plans plans;
+  for (const double gap : {0.5, 0.01, 1e-3}) {
+    VesicleParameters v = test::vesicle("sphere", 1, 6);
+    const Coefficients a = initial_position(v);
+    v.center = (2 + gap) * Vec3(0.3, -0.5, 0.8).normalized();
+    const Coefficients b = initial_position(v);
+    const Gap g = smallest_gap(plans, std::vector{a, b});
+    CHECK(g.distance == Approx(gap).epsilon(gap < 0.1 ? 1e-5 : 0.05));  // exact only near contact, where it matters
+    CHECK_FALSE(g.crossing);
+  }
+}
+
+TEST_CASE("overlapping and nested vesicles are refused with their numbers") {
+  Plans plans;
+  for (const double distance : {0.0, 0.4, 1.9}) {
+    Scene scene = test::shear_scene(test::vesicle("sphere", 1, 6), 0.1, 1);
+    VesicleParameters other = test::vesicle("sphere", 1, 6);
+    other.radius = distance == 0 ? 0.4 : 1;
+    other.center = {distance, 0, 0};
+    scene.vesicles.push_back(other);
+    const Setting s = make_setting(scene, plans);
+    CHECK_THROWS_WITH(initial_dynamics(s), Catch::Contains("vesicles 0 and 1 overlap"));
+  }
+}
+
+TEST_CASE("a pair gives the same bits with one and with two threads") {
+  const Scene scene = pair_scene({1.3, 0, -0.6}, 0.1);
+  const auto run = [&](int threads) {
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(threads);
+    Plans plans;
+    const Setting s = make_setting(scene, plans);
+    const std::vector<double> numbers = serialised(test::advanced(s, initial_dynamics(s), 0.1, 2));
+    omp_set_num_threads(before);
+    return numbers;
+  };
+  const bool same = run(1) == run(2);
+  CHECK(same);
+}
