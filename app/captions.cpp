@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace app {
 
@@ -29,19 +31,37 @@ std::string time_caption(const sim::Scene& scene, double time) {
 }
 
 std::string parameter_caption(const sim::Scene& scene, double area_radius, double reduced_volume) {
-  const sim::VesicleParameters& vesicle = scene.vesicles.front();
-  const double stiffness = vesicle.bending_modulus;
   std::string text;
-  const auto add = [&](std::string_view symbol, double value) {
-    text += fmt::format("{}{} = {:.3g}", text.empty() ? "" : "   ", symbol, value);
+  // The values of all vesicles, each once: "λ = 1, 10"; of many different ones the range.
+  const auto add = [&](std::string_view symbol, auto&& value_of) {
+    std::vector<double> values;
+    for (const sim::VesicleParameters& vesicle : scene.vesicles)
+      if (const double value = value_of(vesicle); value > 0) values.push_back(value);
+    std::sort(values.begin(), values.end());
+    std::vector<std::string> words;
+    for (const double value : values)
+      if (std::string word = fmt::format("{:.3g}", value); words.empty() || word != words.back()) words.push_back(word);
+    if (words.empty()) return;
+    constexpr std::size_t most = 3;
+    if (words.size() > most) words = {fmt::format("{} to {}", words.front(), words.back())};
+    text += fmt::format("{}{} = {}", text.empty() ? "" : "   ", symbol, fmt::join(words, ", "));
   };
   double rate = 0;
   for (const sim::FlowParameters& flow : scene.flows) rate = std::max(rate, deformation_rate(flow, area_radius));
-  if (rate > 0 && stiffness > 0) add("Ca", rate * std::pow(area_radius, 3) / stiffness);
-  const double weight = std::abs(vesicle.density_difference) * scene.buoyancy.gravity.norm();
-  if (weight > 0 && stiffness > 0) add("Bo", weight * std::pow(area_radius, 4) / stiffness);
-  add("λ", vesicle.viscosity_contrast);
-  add("ν", reduced_volume);
+  const double gravity = scene.buoyancy.gravity.norm();
+  add("Ca", [&](const sim::VesicleParameters& v) {
+    return v.bending_modulus > 0 ? rate * std::pow(area_radius, 3) / v.bending_modulus : 0;
+  });
+  add("Bo", [&](const sim::VesicleParameters& v) {
+    return v.bending_modulus > 0 ? std::abs(v.density_difference) * gravity * std::pow(area_radius, 4) / v.bending_modulus : 0;
+  });
+  add("λ", [](const sim::VesicleParameters& v) { return v.viscosity_contrast; });
+  const sim::VesicleParameters& first = scene.vesicles.front();
+  const bool alike = std::all_of(scene.vesicles.begin(), scene.vesicles.end(), [&](const sim::VesicleParameters& v) {
+    return v.shape == first.shape && v.reduced_volume == first.reduced_volume && v.axes == first.axes &&
+           v.coefficients == first.coefficients && v.file == first.file;
+  });
+  if (alike) text += fmt::format("   ν = {:.3g}", reduced_volume);
   return text;
 }
 

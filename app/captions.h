@@ -14,7 +14,8 @@ TimeUnit time_unit(const sim::Scene&);
 
 /// "γ̇t = 12.50" in a steady shear flow, "t = 12.50" otherwise.
 std::string time_caption(const sim::Scene&, double time);
-/// "Ca = 100   λ = 1   ν = 0.85": of the first vesicle; area_radius and reduced_volume as they are, not as asked for.
+/// "Ca = 100   λ = 1   ν = 0.85": area_radius and reduced_volume of the first vesicle, as
+/// they are, not as asked for. Where vesicles differ: "λ = 1, 10", and ν only when all shapes are alike.
 /// Ca = mu chi R^3 / kappa_b with chi the shear or extension rate, or the wall-ward shear a R of a Poiseuille flow.
 std::string parameter_caption(const sim::Scene&, double area_radius, double reduced_volume);
 

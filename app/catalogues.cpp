@@ -4,6 +4,7 @@
 #include "render/figure.h"
 #include "render/style.h"
 #include "sim/flows.h"
+#include "sim/placements.h"
 #include "sim/shapes.h"
 #include "sim/stepper.h"
 
@@ -27,6 +28,7 @@ const std::vector<Catalogue>& catalogues() {
   static const std::vector<Catalogue> all{
       {"flows", "background flows", words(sim::flow_catalogue())},
       {"shapes", "initial shapes", words(sim::shape_catalogue())},
+      {"placements", "ways to place many vesicles", words(sim::placement_catalogue())},
       {"schemes", "time stepping schemes", words(sim::scheme_catalogue())},
       {"cameras", "directions of view", words(render::cameras())},
       {"styles", "ways to paint a vesicle", words(render::styles())},

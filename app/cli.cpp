@@ -94,6 +94,9 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) {
        app.add_option("--csv", o.csv, "write comma-separated values; - is standard output")->required();
      }},
+    {"quick",
+     [](CLI::App& app, Options& o) { app.add_flag("--quick", o.quick, "low orders and short times: does it run at all"); }},
+    {"full", [](CLI::App& app, Options& o) { app.add_flag("--full", o.full, "also the orders that take hours"); }},
     {"markdown",
      [](CLI::App& app, Options& o) { app.add_flag("--markdown", o.markdown, "with parameters: docs/reference.md"); }},
 };

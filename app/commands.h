@@ -17,6 +17,7 @@ int figure(const Options&);
 int info(const Options&);
 int export_table(const Options&);
 int list(const Options&);
+int reproduce(const Options&);
 
 struct Command {
   std::string_view name, meaning;
@@ -38,6 +39,8 @@ inline constexpr Command commands[] = {
      figure},
     {"info", "what a trajectory, a scene or a frame holds", "", "FILE", false, "set", info},
     {"export", "a table of measures: one row per saved state and vesicle", "", "TRAJECTORY", false, "csv", export_table},
+    {"reproduce", "recomputes a table or figure of the method's paper; without ITEM, tells which", "ITEM", "", false,
+     "output quiet gl quick full", reproduce},
     {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, parameters", "KIND", "", false, "markdown",
      list},
 };

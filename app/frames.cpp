@@ -216,4 +216,27 @@ FrameReport render_frames(const sim::TrajectoryReader& trajectory, const Setting
   return report;
 }
 
+std::vector<render::Image> draw_stills(const sim::TrajectoryReader& trajectory, const Settings& settings,
+                                       const std::vector<Still>& stills, const Options& options) {
+  Settings plain = settings;
+  plain.view.projection = "orthographic";
+  plain.view.background = "white";
+  plain.view.flow_arrows = plain.view.time_stamp = plain.view.caption = plain.view.scale_bar = false;
+  render::Renderer renderer(render::parse_gl_choice(options.gl), options.shader_dir);
+  const auto plan = std::make_shared<const render::MeshPlan>();
+  std::vector<render::Image> images;
+  for (const Still& still : stills) {
+    const sim::State state = state_at(trajectory, still.time);
+    plain.view.size = {still.width, still.height};
+    Production p{plain, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view), 0, {}, 1, {}};
+    const glm::dvec3 target(still.target[0], still.target[1], still.target[2]);
+    p.framing.depth += glm::length(target - p.framing.target);
+    p.framing.follows = false;
+    p.framing.target = target;
+    p.framing.half_height = still.half_height;
+    images.push_back(draw(renderer, p, state, plan));
+  }
+  return images;
+}
+
 }  // namespace app

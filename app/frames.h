@@ -4,6 +4,7 @@
 #include "options.h"
 #include "settings.h"
 
+#include "render/image.h"
 #include "sim/trajectory.h"
 
 namespace app {
@@ -27,5 +28,15 @@ struct FrameReport {
 /// redo_movie: encode it even if it is there and no frame was drawn.
 FrameReport render_frames(const sim::TrajectoryReader&, const Settings&, const std::filesystem::path& folder,
                           const Options&, bool redo_movie);
+
+/// One instant as a panel of a figure: orthographic, without captions, `half_height` above and below `target`.
+struct Still {
+  double time = 0;
+  sim::Vec3 target = sim::Vec3::Zero();
+  double half_height = 2;
+  int width = 600, height = 400;
+};
+std::vector<render::Image> draw_stills(const sim::TrajectoryReader&, const Settings&, const std::vector<Still>&,
+                                       const Options&);
 
 }  // namespace app

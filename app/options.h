@@ -22,6 +22,7 @@ struct Options {
   int shard = 0, shards = 1;                   ///< --shard 0/4: frames 0, 4, 8, ...
   std::filesystem::path csv;                   ///< --csv; "-": standard output
   bool dry_run = false, quiet = false, resume = false, force = false, markdown = false;
+  bool quick = false, full = false;             ///< --quick, --full
 };
 
 }  // namespace app

@@ -4,6 +4,7 @@
 #include "scene_overrides.h"
 #include "scene_values.h"
 
+#include "sim/placements.h"
 #include "sim/shapes.h"
 
 #include <fmt/format.h>
@@ -54,6 +55,7 @@ bool missing(const std::string& value) { return value.empty(); }
 template <class P> std::string_view selected(const P&) { return {}; }
 std::string_view selected(const sim::FlowParameters& p) { return p.kind; }
 std::string_view selected(const sim::VesicleParameters& p) { return p.shape; }
+std::string_view selected(const sim::PlacementParameters& p) { return p.kind; }
 
 struct Reader {
   const toml::table& root;
@@ -76,6 +78,13 @@ struct Reader {
   void check(const toml::table& table, sim::TimeParameters& p) const {
     if (p.end / p.step > 1e9)
       fail_at(source_of(table, "step"), fmt::format("{:.3g} steps are too many; 'step' must be longer", p.end / p.step));
+  }
+  void check(const toml::table& table, sim::PlacementParameters& p) const {
+    if (p.kind != "file") return;
+    const std::filesystem::path path = std::filesystem::absolute(folder / p.file).lexically_normal();
+    if (!std::filesystem::is_regular_file(path))
+      fail_at(source_of(table, "file"), fmt::format("there is no file '{}'", path.string()));
+    p.file = path.string();
   }
   void check(const toml::table& table, sim::VesicleParameters& p) const {
     if (p.area && p.radius) fail_at(source_of(table, "radius"), "give 'area' or 'radius', not both");
@@ -197,6 +206,11 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
     read_value(sim::Parameter{.name = "title", .unit = "", .meaning = "title of the scene"}, *title,
                settings.scene.title);
   visit_sections(settings, Reader{root, name, folder, use});
+  if (!settings.scene.placements.empty()) try {
+      settings.scene = sim::placed(std::move(settings.scene));
+    } catch (const std::invalid_argument& error) {
+      fail_at(root.get("placement")->source(), error.what());
+    }
   return settings;
 }
 

@@ -28,8 +28,9 @@ struct Selector {
   std::string_view section, key, catalogue;
   std::string_view noun;  ///< in messages: flow 'shear'
 };
-inline constexpr std::array<Selector, 2> selectors{{{"flow", "kind", "flows", "flow"},
-                                                    {"vesicle", "shape", "shapes", "shape"}}};
+inline constexpr std::array<Selector, 3> selectors{{{"flow", "kind", "flows", "flow"},
+                                                    {"vesicle", "shape", "shapes", "shape"},
+                                                    {"placement", "kind", "placements", "placement"}}};
 
 /// Keys of a flow's time factor.
 struct TimeFactorKey {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace app {
 
@@ -29,6 +30,7 @@ struct Extreme {
 
 std::vector<Extreme> extremes(const std::vector<sim::StepRecord>& steps) {
   std::vector<Extreme> all;
+  double gap = std::numeric_limits<double>::infinity();
   const auto note = [&all](const char* name, double value) {
     auto entry = std::find_if(all.begin(), all.end(), [&](const Extreme& e) { return e.name == name; });
     if (entry == all.end()) entry = all.insert(all.end(), {name, 0});
@@ -36,11 +38,14 @@ std::vector<Extreme> extremes(const std::vector<sim::StepRecord>& steps) {
   };
   for (const sim::StepRecord& step : steps) {
     visit(step, [&](const char* name, const char*, double value) {
-      if (std::string_view(name) != "step" && std::string_view(name) != "time" && std::isfinite(value)) note(name, value);
+      const std::string_view word(name);
+      if (word == "gap") gap = std::min(gap, value);
+      else if (word != "step" && word != "time" && std::isfinite(value)) note(name, value);
     });
     for (const sim::VesicleStep& vesicle : step.vesicles)
       visit(vesicle, [&](const char* name, const char*, double value) { note(name, value); });
   }
+  if (std::isfinite(gap)) all.push_back({"gap (smallest)", gap});
   return all;
 }
 

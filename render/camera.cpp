@@ -45,8 +45,7 @@ const std::vector<CameraRow>& cameras() {
   static const std::vector<CameraRow> rows{
       {"flow-gradient", "from -y: the flow to the right, its gradient up", turned(0, 0)},
       {"three-quarter", "flow-gradient, from a little to the left and above", turned(-22, 16)},
-      {"flow-vorticity", "from above: the flow to the right, vorticity up the picture",
-       axes_from({0, 0, 1}, {0, 1, 0})},
+      {"flow-vorticity", "from above: the flow to the right, vorticity up the picture", axes_from({0, 0, 1}, {0, 1, 0})},
       {"gradient-vorticity", "against the flow: its gradient up", axes_from({1, 0, 0}, {0, 0, 1})},
   };
   return rows;
@@ -127,8 +126,7 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
       const dvec3 origin = framing.follows ? state.centroid + framing.offset : framing.target;
       const dvec3 p = to_axes * (point - origin);
       distance = std::max({distance, p.z + std::abs(p.x) / tx, p.z + std::abs(p.y) / ty});
-      half_height =
-          std::max({half_height, std::abs(p.y) / fill_height, std::abs(p.x) / (fill_width * framing.aspect)});
+      half_height = std::max({half_height, std::abs(p.y) / fill_height, std::abs(p.x) / (fill_width * framing.aspect)});
     }
   framing.distance = distance / view.zoom;
   framing.half_height = framing.perspective ? framing.distance * tangent_of_half_angle : half_height / view.zoom;
@@ -146,8 +144,7 @@ Camera make_camera(const Framing& framing, const dvec3& centroid) {
   const double reach = 4 * (framing.depth + framing.half_height * std::max(1.0, framing.aspect));
   const double distance = framing.perspective ? framing.distance : 2 * reach;
   const double near = std::max(distance - reach, 0.02 * distance), far = distance + reach;
-  camera.view =
-      glm::lookAt(camera.target + distance * framing.axes.back, camera.target, framing.axes.up);
+  camera.view = glm::lookAt(camera.target + distance * framing.axes.back, camera.target, framing.axes.up);
   const double w = camera.half_width, h = camera.half_height;
   const double share = near / distance;  // of the near plane's size in that of the target
   camera.projection = framing.perspective ? glm::frustum(-w * share, w * share, -h * share, h * share, near, far)
@@ -196,8 +193,7 @@ sim::Matrix arrow_points(const Framing& framing, const dvec3& centroid) {
       points.push_back(point);
     }
   sim::Matrix result(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t k = 0; k < points.size(); ++k)
-    result.row(static_cast<Eigen::Index>(k)) = to_sim(points[k]).transpose();
+  for (std::size_t k = 0; k < points.size(); ++k) result.row(static_cast<Eigen::Index>(k)) = to_sim(points[k]).transpose();
   return result;
 }
 

@@ -54,9 +54,9 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
 
 /// The matrices of one frame.
 struct Camera {
-  glm::mat4 view{1};        ///< scene -> eye: x right, y up, z toward the viewer
-  glm::mat4 projection{1};  ///< eye -> clip
-  glm::dvec3 target{0};     ///< in the middle of the picture
+  glm::mat4 view{1};                       ///< scene -> eye: x right, y up, z toward the viewer
+  glm::mat4 projection{1};                 ///< eye -> clip
+  glm::dvec3 target{0};                    ///< in the middle of the picture
   double half_width = 1, half_height = 1;  ///< of the picture in the plane of the target
   bool perspective = true;
   bool follows = false;  ///< moves with the vesicles

@@ -45,7 +45,7 @@ std::vector<glm::dvec2> shadows(const Frame& frame) {
 // 0 when the segment touches a membrane's shadow, 1 when it is well away: half an arrow beside a contour looks like
 // something that belongs to the vesicle.
 double clear_of_bodies(const std::vector<glm::dvec2>& shadows, const glm::dvec2& tail, const glm::dvec2& tip) {
-  constexpr double near = 0.02, far = 0.045;  // half heights
+  constexpr double near = 0.03, far = 0.055;  // half heights
   const glm::dvec2 along = tip - tail;
   const double length2 = std::max(glm::dot(along, along), 1e-12);
   double nearest2 = far * far;
@@ -103,9 +103,8 @@ Renderer::~Renderer() {
 }
 
 PngText Renderer::metadata() const {
-  return {{"back_end", information().back_end},
-          {"GL_RENDERER", information().renderer},
-          {"GL_VERSION", information().version}};
+  return {
+      {"back_end", information().back_end}, {"GL_RENDERER", information().renderer}, {"GL_VERSION", information().version}};
 }
 
 const Program& Renderer::program(const std::string& name, const std::string& defines) {
@@ -125,8 +124,7 @@ const Program& Renderer::program(const std::string& name, const std::string& def
 void Renderer::begin(const Frame& frame) {
   context_.make_current();
   const Gl& gl = context_.gl();
-  const int width = frame.view.size[0] * frame.view.supersampling,
-            height = frame.view.size[1] * frame.view.supersampling;
+  const int width = frame.view.size[0] * frame.view.supersampling, height = frame.view.size[1] * frame.view.supersampling;
   if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height) {
     framebuffer_.reset();
     framebuffer_.emplace(gl, width, height);

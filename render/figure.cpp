@@ -13,8 +13,7 @@ const std::vector<FigureRow>& figures() {
       {"cross-sections", "sections with the plane y = const through each centroid, one panel an instant", false,
        draw_cross_sections},
       {"overlay", "the same sections over each other in one panel, coloured by time", false, draw_overlay},
-      {"inclination", "angle between the flow and the longest axis in the shear plane against time", true,
-       draw_inclination},
+      {"inclination", "angle between the flow and the longest axis in the shear plane against time", true, draw_inclination},
       {"time-series", "diagnostics against time", true, draw_time_series},
   };
   return rows;
@@ -32,15 +31,13 @@ std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, c
   if (count == 0) return chosen;
   if (!parameters.times.empty()) {
     for (const double time : parameters.times) {
-      const auto nearest = std::min_element(state_times.begin(), state_times.end(), [&](double a, double b) {
-        return std::abs(a - time) < std::abs(b - time);
-      });
+      const auto nearest = std::min_element(state_times.begin(), state_times.end(),
+                                            [&](double a, double b) { return std::abs(a - time) < std::abs(b - time); });
       chosen.push_back(static_cast<std::size_t>(nearest - state_times.begin()));
     }
     return chosen;
   }
-  const std::size_t panels =
-      std::clamp<std::size_t>(static_cast<std::size_t>(std::max(parameters.panels, 1)), 1, count);
+  const std::size_t panels = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(parameters.panels, 1)), 1, count);
   for (std::size_t k = 0; k < panels; ++k) {
     const double place = panels == 1 ? 0 : static_cast<double>(k * (count - 1)) / static_cast<double>(panels - 1);
     chosen.push_back(static_cast<std::size_t>(std::lround(place)));

@@ -115,8 +115,7 @@ std::string letter(std::size_t k) {
 
 // Dark blue, green, orange: early to late, distinct in grey as well.
 Colour colour_of_time(double t) {
-  constexpr std::array<Colour, 4> stops{
-      {{0.10, 0.17, 0.42}, {0.00, 0.45, 0.62}, {0.20, 0.66, 0.45}, {0.93, 0.62, 0.13}}};
+  constexpr std::array<Colour, 4> stops{{{0.10, 0.17, 0.42}, {0.00, 0.45, 0.62}, {0.20, 0.66, 0.45}, {0.93, 0.62, 0.13}}};
   const double place = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(place), stops.size() - 2);
   const double f = place - static_cast<double>(i);
@@ -187,8 +186,7 @@ Figure draw_overlay(const FigureInput& input) {
     panel.top = top;
     panel.width = width;
     panel.height = height;
-    const AxisLabels labels{
-        axis_label("x", input, s->follows), axis_label("z", input, s->follows), true, true, true, 5, 5};
+    const AxisLabels labels{axis_label("x", input, s->follows), axis_label("z", input, s->follows), true, true, true, 5, 5};
     draw_grid(cairo, panel, labels);
     const double first = s->times.front(), span = std::max(s->times.back() - first, 1e-300);
     std::vector<std::string> names;

@@ -70,32 +70,32 @@ Figure stacked(std::vector<Series> series, const std::string& time_label, std::s
       for (const double v : values)
         if (std::isfinite(v)) size = std::max(size, std::abs(v));
       // a constant is drawn as one: rounding errors are not blown up to the height of the panel
-      const Panel panel{span,  range_of(values, 0.07, std::max(1e-6 * size, 1e-14)),
-                        left,  top + static_cast<double>(k) * (height + gap),
-                        width, height};
+      Panel panel{span,  range_of(values, 0.07, std::max(1e-4 * size, 1e-14)),
+                  left,  top + static_cast<double>(k) * (height + gap),
+                  width, height};
       const bool last = k + 1 == panels.size();
-      const AxisLabels labels{last ? time_label : "",
-                              panels[k].axis,
-                              last,
-                              true,
-                              true,
-                              6,
-                              4,
-                              panels[k].axis.find("°") != std::string::npos};
-      draw_grid(cairo, panel, labels);
+      const AxisLabels labels{
+          last ? time_label : "", panels[k].axis, last, true, true, 6, 4, panels[k].axis.find("°") != std::string::npos};
       std::vector<std::string> names;
       std::vector<Colour> colours;
       std::vector<double> at;
       for (std::size_t i = 0; i < panels[k].series.size(); ++i) {
         const Series& s = *panels[k].series[i];
         at.insert(at.end(), s.times.begin(), s.times.end());
-        draw_polyline(cairo, panel, s.times, s.values, {curve_colour(i), 1.6, 1});
         if (s.name.empty()) continue;
         names.push_back(s.name);
         colours.push_back(curve_colour(i));
       }
+      const std::optional<Corner> corner = empty_corner(panel, at, values);
+      if (!corner && !names.empty()) {  // room for the legend above the curves
+        const double share = legend_height(names.size()) / height;
+        panel.y.high += panel.y.size() * share / (1 - share);
+      }
+      draw_grid(cairo, panel, labels);
+      for (std::size_t i = 0; i < panels[k].series.size(); ++i)
+        draw_polyline(cairo, panel, panels[k].series[i]->times, panels[k].series[i]->values, {curve_colour(i), 1.6, 1});
       draw_axes(cairo, font, panel, labels);
-      draw_legend(cairo, font, panel, names, colours, emptiest_corner(panel, at, values));
+      draw_legend(cairo, font, panel, names, colours, corner.value_or(Corner::upper_right));
     }
   };
   return figure;

@@ -11,9 +11,7 @@ namespace {
 constexpr int linear_steps = 4096;  // the steepest part of the sRGB curve needs 0.8 codes a step, so codes survive
 
 double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
-double srgb_of(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
+double srgb_of(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
 
 struct Tables {
   std::array<std::uint32_t, 256> linear;  // 0..65535
@@ -34,9 +32,8 @@ const Tables& tables() {
 
 void check_same_size(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throw std::invalid_argument("pictures of different size: " + std::to_string(a.width) + "x" +
-                                std::to_string(a.height) + " and " + std::to_string(b.width) + "x" +
-                                std::to_string(b.height));
+    throw std::invalid_argument("pictures of different size: " + std::to_string(a.width) + "x" + std::to_string(a.height) +
+                                " and " + std::to_string(b.width) + "x" + std::to_string(b.height));
 }
 
 // Sums of one row of blocks: row-wise accumulation keeps memory access sequential.

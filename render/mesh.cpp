@@ -43,8 +43,7 @@ MeshPlan::MeshPlan(int latitudes, int longitudes) : latitudes_(latitudes), longi
   for (std::uint32_t j = 0; j < columns; ++j)
     for (std::uint32_t i = 0; i < rings; ++i) {
       const double t = theta_[i + 1], f = phi_[j];
-      parameters_[j * rings + i] =
-          glm::dvec3(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t));
+      parameters_[j * rings + i] = glm::dvec3(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t));
     }
   parameters_[north] = {0, 0, 1};
   parameters_[south] = {0, 0, -1};
@@ -95,7 +94,8 @@ Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& st
   if (state.tracers.rows() > 0) {
     const SurfacePoints dots = surface_points(state.position, state.tracers);
     for (Eigen::Index k = 0; k < state.tracers.rows(); ++k)
-      mesh.tracers.push_back({to_glm(dots.position.row(k)), to_glm(dots.normal.row(k)), tracer_is_bright(static_cast<int>(k))});
+      mesh.tracers.push_back(
+          {to_glm(dots.position.row(k)), to_glm(dots.normal.row(k)), tracer_is_bright(static_cast<int>(k))});
   }
   mesh.plan = std::move(plan);
   return mesh;
@@ -109,7 +109,8 @@ std::vector<glm::vec2> nearest_tracers(const Mesh& mesh) {
       const Mesh::Tracer& dot = mesh.tracers[k];
       const glm::vec3 away = mesh.position[v] - dot.position;
       const float d = glm::dot(away, away);
-      if (d >= second || glm::dot(mesh.normal[v], dot.normal) < 0.2F) continue;  // the far side of a thin disc is near as well
+      if (d >= second || glm::dot(mesh.normal[v], dot.normal) < 0.2F)
+        continue;  // the far side of a thin disc is near as well
       if (d < first) {
         second = first;
         first = d;

@@ -87,16 +87,15 @@ void draw_captions(Image& image, const Font& font, const Frame& frame) {
     const double thickness = std::max(4 * unit, 1.5);
     const double baseline = image.height - margin;
     if (length > 2 * thickness && length < 0.6 * image.width)
-      draw_on(
-          image,
-          {0, static_cast<int>(baseline - 2.2 * small), image.width, static_cast<int>(std::ceil(2.2 * small + margin))},
-          [&](cairo_t* cairo) {
-            set_colour(cairo, ink);
-            cairo_rectangle(cairo, margin, baseline - thickness, length, thickness);
-            cairo_fill(cairo);
-            draw_text(cairo, font, small, margin + length / 2, baseline - thickness - 0.5 * small, captions.scale,
-                      Align::centre);
-          });
+      draw_on(image,
+              {0, static_cast<int>(baseline - 2.2 * small), image.width, static_cast<int>(std::ceil(2.2 * small + margin))},
+              [&](cairo_t* cairo) {
+                set_colour(cairo, ink);
+                cairo_rectangle(cairo, margin, baseline - thickness, length, thickness);
+                cairo_fill(cairo);
+                draw_text(cairo, font, small, margin + length / 2, baseline - thickness - 0.5 * small, captions.scale,
+                          Align::centre);
+              });
   }
 }
 

@@ -56,10 +56,8 @@ void visit(P& p, V&& v) {
               .maximum = 50},
     p.zoom);
   v(Parameter{.name = "style", .unit = "", .meaning = "how vesicles are painted", .catalogue = "styles"}, p.style);
-  v(
-      Parameter{
-          .name = "size", .unit = "px", .meaning = "width and height of the picture", .minimum = 16, .maximum = 8192},
-      p.size);
+  v(Parameter{.name = "size", .unit = "px", .meaning = "width and height of the picture", .minimum = 16, .maximum = 8192},
+    p.size);
   v(Parameter{.name = "supersampling",
               .unit = "",
               .meaning = "samples along each side of a pixel: 1 draft, 2 movies, 3 stills",
@@ -113,12 +111,10 @@ struct MovieParameters {
 template <class P, class V>
 requires std::same_as<std::remove_const_t<P>, MovieParameters>
 void visit(P& p, V&& v) {
-  v(Parameter{.name = "frame_rate",
-              .unit = "1/s",
-              .meaning = "frames per second of the video",
-              .minimum = 0.1,
-              .maximum = 240},
-    p.frame_rate);
+  v(
+      Parameter{
+          .name = "frame_rate", .unit = "1/s", .meaning = "frames per second of the video", .minimum = 0.1, .maximum = 240},
+      p.frame_rate);
   v(Parameter{.name = "time_per_frame",
               .unit = "time",
               .meaning = "simulated time from frame to frame; 0: save_every, one frame a saved state",
@@ -138,11 +134,10 @@ template <class P, class V>
 requires std::same_as<std::remove_const_t<P>, FigureParameters>
 void visit(P& p, V&& v) {
   v(Parameter{.name = "kind", .unit = "", .meaning = "which figure", .catalogue = "figures"}, p.kind);
-  v(Parameter{.name = "out",
-              .unit = "",
-              .meaning = "file name without extension; empty: the name of the kind",
-              .is_path = true},
-    p.out);
+  v(
+      Parameter{
+          .name = "out", .unit = "", .meaning = "file name without extension; empty: the name of the kind", .is_path = true},
+      p.out);
   v(Parameter{.name = "times",
               .unit = "time",
               .meaning = "instants to show; empty: evenly spread over the trajectory",

@@ -69,8 +69,7 @@ void draw_axes(cairo_t* cairo, const Font& font, const Panel& p, const AxisLabel
   cairo_set_line_width(cairo, line);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT);
   cairo_set_line_join(cairo, CAIRO_LINE_JOIN_MITER);
-  const std::vector<double> xs = tick_values(p.x, labels.x_ticks),
-                            ys = tick_values(p.y, labels.y_ticks, labels.y_degrees);
+  const std::vector<double> xs = tick_values(p.x, labels.x_ticks), ys = tick_values(p.y, labels.y_ticks, labels.y_degrees);
   for (const double v : xs) {
     cairo_move_to(cairo, p.page_x(v), p.top + p.height);
     cairo_rel_line_to(cairo, 0, -tick);
@@ -88,8 +87,8 @@ void draw_axes(cairo_t* cairo, const Font& font, const Panel& p, const AxisLabel
       draw_text(cairo, font, tick_text, p.page_x(v), p.top + p.height + 4 + tick_text, number_text(v), Align::centre);
   if (labels.y_numbers)
     for (const double v : ys)
-      widest = std::max(widest, draw_text(cairo, font, tick_text, p.left - 5, p.page_y(v) + 0.36 * tick_text,
-                                          number_text(v), Align::right));
+      widest = std::max(widest, draw_text(cairo, font, tick_text, p.left - 5, p.page_y(v) + 0.36 * tick_text, number_text(v),
+                                          Align::right));
   if (!labels.x.empty())
     draw_text(cairo, font, label_text, p.left + p.width / 2, p.top + p.height + 9 + tick_text + label_text, labels.x,
               Align::centre);
@@ -149,6 +148,8 @@ void draw_closed_curve(cairo_t* cairo, const Panel& p, const ClosedCurve& curve,
   cairo_restore(cairo);
 }
 
+double legend_height(std::size_t names) { return 1.45 * tick_text * static_cast<double>(names) + 10; }
+
 void draw_legend(cairo_t* cairo, const Font& font, const Panel& p, const std::vector<std::string>& names,
                  const std::vector<Colour>& colours, Corner corner) {
   double widest = 0;
@@ -169,8 +170,8 @@ void draw_legend(cairo_t* cairo, const Font& font, const Panel& p, const std::ve
   }
 }
 
-void draw_legend_line(cairo_t* cairo, const Font& font, double right, double baseline,
-                      const std::vector<std::string>& names, const std::vector<Colour>& colours) {
+void draw_legend_line(cairo_t* cairo, const Font& font, double right, double baseline, const std::vector<std::string>& names,
+                      const std::vector<Colour>& colours) {
   double x = right;
   for (std::size_t i = names.size(); i-- > 0;) {
     set_colour(cairo, black);
@@ -184,9 +185,8 @@ void draw_legend_line(cairo_t* cairo, const Font& font, double right, double bas
   }
 }
 
-Corner emptiest_corner(const Panel& p, const std::vector<double>& x, const std::vector<double>& y) {
-  constexpr std::array<Corner, 4> corners{Corner::upper_right, Corner::lower_right, Corner::upper_left,
-                                          Corner::lower_left};
+std::optional<Corner> empty_corner(const Panel& p, const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr std::array<Corner, 4> corners{Corner::upper_right, Corner::lower_right, Corner::upper_left, Corner::lower_left};
   std::array<int, 4> points{};
   for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
     const double a = (x[i] - p.x.low) / p.x.size(), b = (y[i] - p.y.low) / p.y.size();
@@ -195,7 +195,9 @@ Corner emptiest_corner(const Panel& p, const std::vector<double>& x, const std::
     if (b < 0.34 && a > 0.66) ++points[1];
     if (b < 0.34 && a < 0.34) ++points[3];
   }
-  return corners[static_cast<std::size_t>(std::min_element(points.begin(), points.end()) - points.begin())];
+  const auto empty = std::find(points.begin(), points.end(), 0);
+  if (empty == points.end()) return {};
+  return corners[static_cast<std::size_t>(empty - points.begin())];
 }
 
 }  // namespace render

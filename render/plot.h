@@ -5,6 +5,7 @@
 #include "section.h"
 #include "text.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,9 +61,11 @@ enum class Corner { upper_right, lower_right, upper_left, lower_left };
 void draw_legend(cairo_t* cairo, const Font& font, const Panel& panel, const std::vector<std::string>& names,
                  const std::vector<Colour>& colours, Corner corner = Corner::upper_right);
 /// The same in one line whose right end is at (right, baseline).
-void draw_legend_line(cairo_t* cairo, const Font& font, double right, double baseline,
-                      const std::vector<std::string>& names, const std::vector<Colour>& colours);
-/// The corner that holds the fewest of the points.
-Corner emptiest_corner(const Panel& panel, const std::vector<double>& x, const std::vector<double>& y);
+void draw_legend_line(cairo_t* cairo, const Font& font, double right, double baseline, const std::vector<std::string>& names,
+                      const std::vector<Colour>& colours);
+/// Height of a legend with so many names, with the space round it, pt.
+double legend_height(std::size_t names);
+/// A corner that holds none of the points, if there is one.
+std::optional<Corner> empty_corner(const Panel& panel, const std::vector<double>& x, const std::vector<double>& y);
 
 }  // namespace render

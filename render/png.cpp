@@ -45,8 +45,7 @@ std::vector<png_text> chunks_of(const PngText& text) {
   return chunks;
 }
 
-bool write_stream(std::FILE* file, const Image& image, std::vector<png_text>& chunks, int compression,
-                  Failure& failure) {
+bool write_stream(std::FILE* file, const Image& image, std::vector<png_text>& chunks, int compression, Failure& failure) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, on_error, on_warning);
   if (!png) return false;
   png_infop info = png_create_info_struct(png);

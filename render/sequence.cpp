@@ -20,8 +20,7 @@ sim::State interpolated(const sim::State& a, const sim::State& b, double time) {
     const sim::Matrix &x0 = after.position_before.values, &x1 = after.position.values;
     const sim::Matrix &v0 = after.velocity_before.values, &v1 = after.velocity.values;
     sim::VesicleState& v = state.vesicles[k];
-    v.position.values =
-        rest * rest * (1 + 2 * u) * x0 + u * u * (3 - 2 * u) * x1 + h * u * rest * (rest * v0 - u * v1);
+    v.position.values = rest * rest * (1 + 2 * u) * x0 + u * u * (3 - 2 * u) * x1 + h * u * rest * (rest * v0 - u * v1);
     v.velocity.values = 6 * u * rest / h * (x1 - x0) + rest * (1 - 3 * u) * v0 + u * (3 * u - 2) * v1;
     // The tension of a is known in a's parametrisation only.
     if (before.relabelled == after.relabelled && before.tension.order == after.tension.order)

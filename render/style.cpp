@@ -21,8 +21,7 @@ const std::vector<StyleRow>& styles() {
 
 const StyleRow& find_style(std::string_view name) {
   if (const StyleRow* row = sim::find_row(styles(), name)) return *row;
-  throw std::invalid_argument("unknown style '" + std::string(name) + "'" +
-                              sim::suggestion(name, sim::row_names(styles())));
+  throw std::invalid_argument("unknown style '" + std::string(name) + "'" + sim::suggestion(name, sim::row_names(styles())));
 }
 
 std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers) {

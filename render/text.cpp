@@ -90,8 +90,7 @@ double text_width(cairo_t* cairo, const Font& font, double size, std::string_vie
   return width;
 }
 
-double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
-                 Align align) {
+double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text, Align align) {
   const double width = text_width(cairo, font, size, text);
   double pen = align == Align::left ? x : align == Align::centre ? x - width / 2 : x - width;
   cairo_new_path(cairo);

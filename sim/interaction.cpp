@@ -73,11 +73,13 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
     w.dual = w.dual || materials[i].viscosity_contrast != 1;
   }
   w.sources.resize(n);
+  w.coarse_sources.resize(n);
   w.targets.resize(n);
   w.pairs.assign(n, std::vector<PairPlan>(n));
   parallel_for(n, [&](int i) {
     w.sources[i] = make_sources(*w.source_basis[i], positions[i]);
-    w.targets[i] = w.target_basis[i]->synthesize(positions[i]).values;
+    w.coarse_sources[i] = make_sources(*w.target_basis[i], positions[i]);
+    w.targets[i] = w.coarse_sources[i].points;
   });
   parallel_for(n * n, [&](int task) {
     const int i = task / n, j = task % n;
@@ -85,9 +87,15 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
     PairPlan& pair = w.pairs[i][j];
     const Sources& s = w.sources[j];
     const double reach = options.near_spacings * s.spacing.maxCoeff();
+    const double coarse_reach = options.coarse_spacings * w.coarse_sources[j].spacing.maxCoeff();
     for (int k = 0; k < int(w.targets[i].rows()); ++k) {
       const Vec3 x = w.targets[i].row(k).transpose();
-      if (options.near_rule && distance_to_box(x, s.low, s.high) < reach) {
+      const double to_box = distance_to_box(x, s.low, s.high);
+      if (coarse_reach > 0 && to_box >= coarse_reach) {
+        pair.coarse.push_back(k);
+        continue;
+      }
+      if (options.near_rule && to_box < reach) {
         const Eigen::Index source = nearest_source(s, x);
         const double away = (s.points.row(source).transpose() - x).norm();
         if (away < (options.near_spacings + 1) * s.spacing[source]) {
@@ -96,11 +104,12 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
           if (nearest.distance < options.near_spacings * s.spacing[source]) {
             pair.near.push_back(k);
             pair.rows.push_back(near_row(*rotations[j], positions[j], x, nearest, options.near_order));
+            pair.nearest.push_back(nearest);
             continue;
           }
         }
       }
-      pair.far.push_back(k);
+      pair.fine.push_back(k);
     }
   });
   return w;
@@ -143,21 +152,31 @@ void add_direct_sum(const Sources& s, const Matrix& force, const Matrix* dual, c
 
 std::vector<Coefficients> induced_velocity(const Interaction& w, std::span<const Densities> densities) {
   const int n = int(densities.size());
-  std::vector<Matrix> force(n), dual(n);
-  std::vector<Coefficients> result(n);
+  struct Samples {
+    Matrix force, dual;
+  };
+  std::vector<Samples> fine(n), coarse(n);
   parallel_for(n, [&](int j) {
-    force[j] = w.source_basis[j]->synthesize(densities[j].force).values;
-    if (w.dual) dual[j] = w.source_basis[j]->synthesize(densities[j].dual).values;
+    fine[j].force = w.source_basis[j]->synthesize(densities[j].force).values;
+    coarse[j].force = w.target_basis[j]->synthesize(densities[j].force).values;
+    if (!w.dual) return;
+    fine[j].dual = w.source_basis[j]->synthesize(densities[j].dual).values;
+    coarse[j].dual = w.target_basis[j]->synthesize(densities[j].dual).values;
   });
+  std::vector<Coefficients> result(n);
   parallel_for(n, [&](int i) {
     Matrix velocity = Matrix::Zero(w.targets[i].rows(), 3);
+    const auto add = [&](const std::vector<int>& list, const Sources& sources, const Samples& samples) {
+      if (list.empty()) return;
+      Matrix sum = Matrix::Zero(Eigen::Index(list.size()), 3);
+      add_direct_sum(sources, samples.force, w.dual ? &samples.dual : nullptr, w.targets[i](list, Eigen::all), sum);
+      for (std::size_t k = 0; k < list.size(); ++k) velocity.row(list[k]) += sum.row(Eigen::Index(k));
+    };
     for (int j = 0; j < n; ++j) {
       if (i == j) continue;
       const PairPlan& pair = w.pairs[i][j];
-      Matrix at(Eigen::Index(pair.far.size()), 3), sum = Matrix::Zero(at.rows(), 3);
-      for (std::size_t k = 0; k < pair.far.size(); ++k) at.row(k) = w.targets[i].row(pair.far[k]);
-      add_direct_sum(w.sources[j], force[j], w.dual ? &dual[j] : nullptr, at, sum);
-      for (std::size_t k = 0; k < pair.far.size(); ++k) velocity.row(pair.far[k]) += sum.row(k);
+      add(pair.coarse, w.coarse_sources[j], coarse[j]);
+      add(pair.fine, w.sources[j], fine[j]);
       for (std::size_t k = 0; k < pair.near.size(); ++k) {
         Vec3 v = apply_row(pair.rows[k].single, densities[j].force.values);
         if (w.dual) v += apply_row(pair.rows[k].dual, densities[j].dual.values);
@@ -166,6 +185,23 @@ std::vector<Coefficients> induced_velocity(const Interaction& w, std::span<const
     }
     result[i] = w.target_basis[i]->analyze(velocity);
   });
+  return result;
+}
+
+std::vector<Coefficients> repulsion(const Interaction& w, double strength, double range) {
+  const int n = int(w.targets.size());
+  std::vector<Coefficients> result(n);
+  for (int i = 0; i < n; ++i) {
+    Matrix force = Matrix::Zero(w.targets[i].rows(), 3);
+    for (int j = 0; j < n; ++j)
+      for (std::size_t k = 0; i != j && k < w.pairs[i][j].near.size(); ++k) {
+        const NearestPoint& nearest = w.pairs[i][j].nearest[k];
+        const int row = w.pairs[i][j].near[k];
+        force.row(row) += strength * std::exp(-nearest.distance / range) *
+                          (w.targets[i].row(row) - nearest.position.transpose()).normalized();
+      }
+    result[i] = w.target_basis[i]->analyze(force);
+  }
   return result;
 }
 

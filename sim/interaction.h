@@ -1,7 +1,8 @@
 // What vesicles do to one another: single and double layer of each, evaluated at the grid points of the others.
 //
 // Far targets: smooth quadrature on a source grid of order q ~ p^(3/2) (section 3.1.10), summed directly. Targets nearer
-// than four local source spacings: the near-singular rule of near.h, one row a target, assembled once per step.
+// than four local source spacings: the near-singular rule of near.h, one row a target, assembled once per step. Targets
+// that keep that distance from the coarser (p+1)-grid take that one: in a suspension nearly all pairs do.
 // Everything outside this file sees only "velocity at targets from densities on sources".
 #pragma once
 
@@ -15,6 +16,7 @@ struct InteractionOptions {
   bool near_rule = true;
   NearOrder near_order;
   double near_spacings = 4;  ///< targets nearer than this many local spacings take the near rule
+  double coarse_spacings = 6;  ///< targets farther than this many spacings of the coarse grid take that; 0: none do
 };
 
 /// Densities on one vesicle, degree p: force for the single layer, (1 - lambda) u for the double layer.
@@ -30,16 +32,18 @@ struct Sources {
   Vec3 low, high;           ///< bounding box
 };
 
-/// Targets of vesicle i that see vesicle j by the smooth rule, and those that need rows.
+/// Targets of vesicle i that see vesicle j by the smooth rule on the coarse or the fine source grid, and those that need
+/// rows, with the nearest point of j for each of these.
 struct PairPlan {
-  std::vector<int> far;
+  std::vector<int> coarse, fine;
   std::vector<int> near;
   std::vector<PointRow> rows;
+  std::vector<NearestPoint> nearest;
 };
 
 struct Interaction {
-  std::vector<const Basis*> source_basis, target_basis;
-  std::vector<Sources> sources;
+  std::vector<const Basis*> source_basis, target_basis;  ///< the target grid is the coarse source grid
+  std::vector<Sources> sources, coarse_sources;
   std::vector<Matrix> targets;                ///< points x 3
   std::vector<std::vector<PairPlan>> pairs;   ///< [target vesicle][source vesicle]
   bool dual = false;                          ///< some viscosity contrast differs from 1
@@ -51,6 +55,10 @@ Interaction plan_interaction(Plans&, std::span<const Coefficients> positions, st
 
 /// Velocity that all other vesicles induce on each, projected on its degree.
 std::vector<Coefficients> induced_velocity(const Interaction&, std::span<const Densities>);
+
+/// Optional short-range repulsion: traction strength exp(-gap/range) on the points of each vesicle that are near another,
+/// away from its nearest point. Force densities as coefficients of degree p; zero beyond the reach of the near rule.
+std::vector<Coefficients> repulsion(const Interaction&, double strength, double range);
 
 /// Sum of the two kernels over one surface at points (count x 3), added to `velocity`: S with 1/(8 pi), D with +3/(4 pi).
 /// Densities are samples at the source points. The smooth rule alone.

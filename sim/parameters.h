@@ -166,6 +166,8 @@ struct NumericsParameters {
   bool near_rule = true;
   int near_latitudes = 32;
   int near_longitudes = 32;
+  double repulsion_strength = 0;
+  double repulsion_range = 0.05;
   double gap_floor = 1e-3;
   double tail_warning = 0.15;
   double step_area_bound = 0.02;
@@ -202,6 +204,11 @@ void visit(P& p, V&& v) {
               .minimum = 4, .maximum = 512}, p.near_latitudes);
   v(Parameter{.name = "near_longitudes", .unit = "", .meaning = "longitudes of the near-singular rule", .minimum = 4,
               .maximum = 512}, p.near_longitudes);
+  v(Parameter{.name = "repulsion_strength", .unit = "force/area",
+              .meaning = "traction strength exp(-gap/range) that pushes membranes apart; 0: none", .minimum = 0},
+    p.repulsion_strength);
+  v(Parameter{.name = "repulsion_range", .unit = "length", .meaning = "range of the repulsion", .minimum = 0,
+              .exclusive_minimum = true}, p.repulsion_range);
   v(Parameter{.name = "gap_floor", .unit = "length", .meaning = "two membranes nearer than this stop the run",
               .minimum = 0}, p.gap_floor);
   v(Parameter{.name = "tail_warning", .unit = "",
@@ -229,12 +236,50 @@ void visit(P& p, V&& v) {
     p.gravity);
 }
 
+/// Many copies of the scene's last vesicle, so that a scene says "64 vesicles" in three lines. Reading a scene turns a
+/// placement into vesicles; the resolved scene lists them.
+struct PlacementParameters {
+  std::string kind = "lattice";
+  int count = 1;
+  double volume_fraction = 0.05;
+  double radius = 3;                ///< tube
+  double jitter = 0;                ///< lattice: share of the free space that a centre may move
+  double gap = 0.05;                ///< least distance between two membranes
+  std::string orientation = "as-given";
+  int seed = 1;
+  Vec3 center = Vec3::Zero();
+  std::string file;
+};
+inline constexpr std::array<std::string_view, 2> orientation_names{"as-given", "random"};
+
+template <class P, class V>
+  requires std::same_as<std::remove_const_t<P>, PlacementParameters>
+void visit(P& p, V&& v) {
+  v(Parameter{.name = "kind", .unit = "", .meaning = "how the copies are placed", .catalogue = "placements"}, p.kind);
+  v(Parameter{.name = "count", .unit = "", .meaning = "number of vesicles", .minimum = 1, .maximum = 100000}, p.count);
+  v(Parameter{.name = "volume_fraction", .unit = "", .meaning = "of the box or tube, which sets its size or length",
+              .minimum = 0, .maximum = 0.74, .exclusive_minimum = true}, p.volume_fraction);
+  v(Parameter{.name = "radius", .unit = "length", .meaning = "of the tube, whose axis is x", .minimum = 0,
+              .exclusive_minimum = true}, p.radius);
+  v(Parameter{.name = "jitter", .unit = "", .meaning = "random shift of lattice centres, as a share of the lattice spacing",
+              .minimum = 0, .maximum = 0.5}, p.jitter);
+  v(Parameter{.name = "gap", .unit = "length", .meaning = "least distance between two membranes", .minimum = 0}, p.gap);
+  v(Parameter{.name = "orientation", .unit = "", .meaning = "axis of each copy", .choices = orientation_names},
+    p.orientation);
+  v(Parameter{.name = "seed", .unit = "", .meaning = "of the random numbers; the same seed gives the same places",
+              .minimum = 0}, p.seed);
+  v(Parameter{.name = "center", .unit = "length", .meaning = "centre of the box or tube"}, p.center);
+  v(Parameter{.name = "file", .unit = "", .meaning = "table of centres, x y z or x y z with an axis, a row a vesicle",
+              .is_path = true}, p.file);
+}
+
 /// The physical half of a scene file: everything that the simulation depends on.
 struct Scene {
   std::string title;
   std::vector<FlowParameters> flows;
   TimeParameters time;
   std::vector<VesicleParameters> vesicles;
+  std::vector<PlacementParameters> placements;  ///< empty once they have been turned into vesicles
   NumericsParameters numerics;
   BuoyancyParameters buoyancy;
 };
@@ -253,6 +298,8 @@ void visit_sections(S& scene, V&& v) {
   v(Section{"flow", "background flow; [[flow]] several times: their sum", true}, scene.flows);
   v(Section{"time", "duration and steps", true}, scene.time);
   v(Section{"vesicle", "one table a vesicle", true}, scene.vesicles);
+  v(Section{"placement", "many copies of the last vesicle; the resolved scene lists them one by one", false},
+    scene.placements);
   v(Section{"numerics", "how accurately, and by which means", false}, scene.numerics);
   v(Section{"buoyancy", "sedimentation", false}, scene.buoyancy);
 }

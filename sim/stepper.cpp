@@ -36,7 +36,8 @@ std::vector<Motion> motions(const Dynamics& d) {
 
 Suspension freeze(const Setting& s, const Dynamics& d, std::span<const Coefficients> frozen) {
   const NumericsParameters& n = s.scene.numerics;
-  SuspensionOptions options{n.source_order, {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}}};
+  SuspensionOptions options{n.source_order, {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
+                            n.repulsion_strength, n.repulsion_range};
   return freeze_suspension(s.plans, s.materials, frozen, upsamplings(d), options);
 }
 

@@ -18,7 +18,9 @@ Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, 
   } else {
     parallel_for(n, freeze);
   }
-  Suspension s{{}, plan_interaction(plans, positions, materials, options.interaction)};
+  Suspension s{{}, plan_interaction(plans, positions, materials, options.interaction), {}};
+  if (n > 1 && options.repulsion_strength > 0)
+    s.repulsion = repulsion(s.interaction, options.repulsion_strength, options.repulsion_range);
   for (auto& m : frozen) s.membranes.push_back(std::move(*m));
   return s;
 }
@@ -36,6 +38,7 @@ std::vector<Coefficients> suspension_forcing(const Suspension& s, std::span<cons
   parallel_for(n, [&](int i) {
     const Membrane& m = s.membranes[i];
     forces[i] = known_force(m, gravity, histories[i]);
+    if (!s.repulsion.empty()) forces[i].values += s.repulsion[i].values;
     r[i] = m.bases.field.analyze(background_velocity(flows, time, m.geometry.x.value));
     r[i].values += m.layers.single.apply(forces[i]).values;
   });

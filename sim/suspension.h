@@ -8,19 +8,21 @@ namespace sim {
 struct Suspension {
   std::vector<Membrane> membranes;
   Interaction interaction;
+  std::vector<Coefficients> repulsion;  ///< force density on each vesicle; empty: none
 };
 
 struct SuspensionOptions {
   int source_order = 0;           ///< of the singular rule
   InteractionOptions interaction;
+  double repulsion_strength = 0, repulsion_range = 0.05;  ///< strength 0: none
 };
 
 /// Geometry and operators of all vesicles at x*.
 Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const Coefficients> positions,
                              std::span<const int> upsamplings, const SuspensionOptions&);
 
-/// r of (39a) for every vesicle: background flow, and the velocities that the bending of the histories and buoyancy
-/// cause, one's own and the others'.
+/// r of (39a) for every vesicle: background flow, and the velocities that the bending of the histories, buoyancy and
+/// repulsion cause, one's own and the others'.
 std::vector<Coefficients> suspension_forcing(const Suspension&, std::span<const FlowParameters>, double time,
                                              const Vec3& gravity, std::span<const Coefficients> histories);
 

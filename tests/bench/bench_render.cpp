@@ -54,3 +54,5 @@ BENCHMARK_CAPTURE(draw, opaque_320x240, 320, 240, "opaque")->Unit(benchmark::kMi
 BENCHMARK_CAPTURE(mesh, order_8, 8)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(mesh, order_24, 24)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(png, level_6, 6)->Unit(benchmark::kMillisecond);
+
+BENCHMARK_MAIN();

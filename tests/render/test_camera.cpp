@@ -99,6 +99,29 @@ TEST_CASE("arrows of a following camera stay at rest in space") {
   CHECK(common > 0.7 * static_cast<double>(a.rows()));
 }
 
+TEST_CASE("arrows stand in the coordinate plane that faces the camera, inside the picture and clear of the captions") {
+  const auto states = drifting(1);
+  for (const auto& [name, axis] : {std::pair{"flow-gradient", 1}, std::pair{"three-quarter", 1},
+                                   std::pair{"flow-vorticity", 2}, std::pair{"gradient-vorticity", 0}})
+    for (const char* projection : {"perspective", "orthographic"}) {
+      INFO(name << " " << projection);
+      render::ViewParameters view;
+      view.camera = name;
+      view.projection = projection;
+      const render::Framing framing = render::frame_trajectory(states, view);
+      const render::Camera camera = render::make_camera(framing, states[0].centroid);
+      const sim::Matrix points = render::arrow_points(framing, states[0].centroid);
+      CHECK(points.rows() >= 20);
+      CHECK(points.rows() <= 60);
+      for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        const glm::dvec2 place = camera.picture_place(render::to_glm(points.row(i)));
+        CHECK(points(i, axis) == Approx(camera.target[axis]).margin(1e-9));
+        CHECK(std::max(std::abs(place.x), std::abs(place.y)) < 0.95);
+        CHECK(render::clear_of_captions(place) == 1);
+      }
+    }
+}
+
 TEST_CASE("an unknown camera is refused with the nearest known word") {
   CHECK_THAT(support::message_of([] { render::find_camera("flow-gradiant"); }),
              Catch::Contains("did you mean 'flow-gradient'"));

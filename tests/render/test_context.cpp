@@ -35,8 +35,7 @@ render::Frame scene() {
 
 TEST_CASE("a missing OpenGL library names the Debian package to install") {
   CHECK_THAT(support::message_of([] { render::open_osmesa({"libNoSuchOSMesa.so.8"}); }), Catch::Contains("libosmesa6"));
-  const std::string egl =
-      support::message_of([] { render::open_egl(render::EglDevices::any, -1, {"libNoSuchEGL.so.1"}); });
+  const std::string egl = support::message_of([] { render::open_egl(render::EglDevices::any, -1, {"libNoSuchEGL.so.1"}); });
   CHECK_THAT(egl, Catch::Contains("libegl1") && Catch::Contains("libgl1-mesa-dri"));
 }
 
@@ -99,8 +98,8 @@ TEST_CASE("the number of Mesa's threads does not change a pixel") {
   std::vector<std::string> bytes;
   for (const char* threads : {"0", "1", "2"}) {
     const std::filesystem::path picture = folder / (std::string("threads") + threads + ".png");
-    const std::string command = std::string("LP_NUM_THREADS=") + threads + " TANKTREAD_TEST_PICTURE='" +
-                                picture.string() + "' '" + self.string() + "' '[child]' > /dev/null";
+    const std::string command = std::string("LP_NUM_THREADS=") + threads + " TANKTREAD_TEST_PICTURE='" + picture.string() +
+                                "' '" + self.string() + "' '[child]' > /dev/null";
     REQUIRE(std::system(command.c_str()) == 0);
     bytes.push_back(support::read_file(picture));
   }
@@ -119,6 +118,5 @@ TEST_CASE("shaders can be taken from a folder, and a fault in one is told with i
   CHECK(render::draw_frame(edited, frame) == render::draw_frame(embedded, frame));
   support::write_file(folder / "body.frag", "void main() { nonsense }\n");
   render::Renderer broken(render::parse_gl_choice("software"), folder.path());
-  CHECK_THAT(support::message_of([&] { render::draw_frame(broken, frame); }),
-             Catch::Contains("body.frag does not compile"));
+  CHECK_THAT(support::message_of([&] { render::draw_frame(broken, frame); }), Catch::Contains("body.frag does not compile"));
 }

@@ -20,14 +20,12 @@ render::FigureInput input() {
   render::FigureInput in;
   in.labels = {"λ = 1", "λ = 4"};
   for (int k = 0; k < 5; ++k) {
-    sim::State state =
-        surfaces::state_of({surfaces::ellipsoid({1.5, 0.8, 0.8}, turn(-12.0 * k, {0, 1, 0}), {-1.6, 0, 0.1}),
-                            surfaces::disc(turn(8.0 * k, {0, 1, 0}), {1.6, 0, -0.1})});
+    sim::State state = surfaces::state_of({surfaces::ellipsoid({1.5, 0.8, 0.8}, turn(-12.0 * k, {0, 1, 0}), {-1.6, 0, 0.1}),
+                                           surfaces::disc(turn(8.0 * k, {0, 1, 0}), {1.6, 0, -0.1})});
     state.time = 2.5 * k;
     in.states.push_back(state);
   }
-  in.series = {
-      {"a", "energy", {0, 1, 2}, {3, 1, 2}}, {"b", "energy", {0, 1, 2}, {1, 1, 1}}, {"", "gap", {0, 2}, {0, 1e-9}}};
+  in.series = {{"a", "energy", {0, 1, 2}, {3, 1, 2}}, {"b", "energy", {0, 1, 2}, {1, 1, 1}}, {"", "gap", {0, 2}, {0, 1e-9}}};
   return in;
 }
 
@@ -112,9 +110,8 @@ TEST_CASE("numbers on axes are written as readers expect") {
 
 TEST_CASE("a figure that cannot be written names its path") {
   const support::TemporaryFolder folder;
-  CHECK_THAT(support::message_of([&] {
-               render::write_figure(render::find_figure("overlay").draw(input()), folder / "no/such/figure");
-             }),
+  CHECK_THAT(support::message_of(
+                 [&] { render::write_figure(render::find_figure("overlay").draw(input()), folder / "no/such/figure"); }),
              Catch::Contains("no/such/figure.png"));
   CHECK_THROWS_AS(render::find_figure("cross-sections").draw({}), std::invalid_argument);
   CHECK_THAT(support::message_of([] { render::find_figure("cross-section"); }),

@@ -30,8 +30,8 @@ void check_golden(const std::string& name, const render::Frame& frame) {
     render::write_png(reports / (name + "_actual.png"), actual);
     render::write_png(reports / (name + "_difference.png"), render::difference_image(expected, actual));
   }
-  INFO(name << ": largest difference " << d.maximum << ", " << d.above_two << " pixels above 2, rmse " << d.rmse
-            << "; see " << TANKTREAD_GOLDEN_REPORTS);
+  INFO(name << ": largest difference " << d.maximum << ", " << d.above_two << " pixels above 2, rmse " << d.rmse << "; see "
+            << TANKTREAD_GOLDEN_REPORTS);
   CHECK(same);
 }
 
@@ -52,8 +52,7 @@ sim::State pair() {
 TEST_CASE("the pair in the opaque style with arrows looks as it did") {
   render::Frame frame = surfaces::frame_of(pair(), small_view());
   const render::StateSummary summary = render::summarize(pair());
-  frame.arrows.points =
-      render::arrow_points(render::frame_trajectory(std::span(&summary, 1), frame.view), summary.centroid);
+  frame.arrows.points = render::arrow_points(render::frame_trajectory(std::span(&summary, 1), frame.view), summary.centroid);
   frame.arrows.velocities = sim::Matrix::Zero(frame.arrows.points.rows(), 3);
   frame.arrows.velocities.col(0) = frame.arrows.points.col(2);
   check_golden("pair_opaque", frame);
@@ -70,9 +69,8 @@ TEST_CASE("a prolate in the checker style looks as it did") {
   render::ViewParameters view = small_view();
   view.style = "checker";
   view.camera = "three-quarter";
-  check_golden(
-      "prolate_checker",
-      surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}))}), view));
+  check_golden("prolate_checker",
+               surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}))}), view));
 }
 
 TEST_CASE("the pair in the outline style on white looks as it did") {

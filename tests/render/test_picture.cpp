@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <numbers>
+#include <set>
 
 using render::Image;
 using sim::Vec3;
@@ -78,8 +79,7 @@ TEST_CASE("the silhouette of an ellipsoid has the area of its projection") {
     view.camera = row.name;
     const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid(a, r)}), view);
     const Vec3 d = r.transpose() * render::to_sim(row.axes.back);  // line of sight in the ellipsoid's axes
-    const double exact =
-        std::numbers::pi * Vec3(a.y() * a.z() * d.x(), a.x() * a.z() * d.y(), a.x() * a.y() * d.z()).norm();
+    const double exact = std::numbers::pi * Vec3(a.y() * a.z() * d.x(), a.x() * a.z() * d.y(), a.x() * a.y() * d.z()).norm();
     CHECK(silhouette(render::draw_frame(renderer, frame), frame.camera).area == Approx(exact).epsilon(2e-3));
   }
 }
@@ -245,6 +245,70 @@ TEST_CASE("arrows point along the flow and none is drawn where it rests") {
   CHECK(upper.first > 20);
 }
 
+TEST_CASE("an arrow that would touch a membrane's picture is left out, one beside it is drawn") {
+  render::Renderer renderer = software();
+  const render::Frame without = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), surfaces::bare_view(400, 300));
+  const auto changed = [&](double x, double y) {  // px that an arrow in the plane y changes
+    render::Frame frame = without;
+    frame.view.flow_arrows = true;
+    frame.arrows.points = Vec3(x, y, 0).transpose();
+    frame.arrows.velocities = Vec3(1, 0, 0).transpose();
+    return render::difference(render::draw_frame(renderer, without), render::draw_frame(renderer, frame)).above_two;
+  };
+  CHECK(changed(1.6, 0) > 30);
+  CHECK(changed(1.05, 0) == 0);
+  CHECK(changed(0, 0) == 0);
+  CHECK(changed(0, -3) == 0);  // before the sphere: arrows are the ground of the picture, never in front
+}
+
+TEST_CASE("a camera that follows through a resting fluid shows beads, which stay where they are") {
+  render::Renderer renderer = software();
+  std::vector<render::StateSummary> states;
+  for (const double x : {0.0, 40.0}) states.push_back(render::summarize(surfaces::state_of({surfaces::sphere({x, 0, 0})})));
+  render::ViewParameters view = surfaces::bare_view(400, 300);
+  view.flow_arrows = true;
+  const auto beads = [&](const std::string& follow) {
+    view.follow = follow;
+    const render::Framing framing = render::frame_trajectory(states, view);
+    render::Frame frame;
+    frame.view = view;
+    frame.camera = render::make_camera(framing, states[0].centroid);
+    frame.arrows.points = render::arrow_points(framing, states[0].centroid);
+    frame.arrows.velocities = sim::Matrix::Zero(frame.arrows.points.rows(), 3);
+    const Image image = render::draw_frame(renderer, frame);
+    int count = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) count += drawn(image.at(x, y));
+    return count;
+  };
+  CHECK(beads("always") > 200);
+  CHECK(beads("never") == 0);
+}
+
+TEST_CASE("the contour of a sphere is a line of the width asked for, and its edges are shaded") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(540, 540);
+  view.style = "outline";
+  view.line_width = 0;
+  view.supersampling = 2;
+  view.outline_width = 8;  // at 1080: 4 px here
+  const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), view);
+  const Image image = render::draw_frame(renderer, frame);
+  double darkest = 1, ink = 0;
+  std::set<int> shades;
+  const auto light = [](int s) { return std::pow((s / 255.0 + 0.055) / 1.055, 2.4); };
+  for (int y = 0; y < 540; ++y)
+    for (int x = 0; x < 540; ++x) {
+      darkest = std::min(darkest, light(image.at(x, y)[0]));
+      ink += 1 - light(image.at(x, y)[0]);
+      shades.insert(image.at(x, y)[0]);
+    }
+  const double px = 270 / frame.camera.half_width, width = ink / (1 - darkest) / (2 * std::numbers::pi * px);
+  CHECK(width > 3.9);
+  CHECK(width < 5.0);          // on the inside a sample more, where it fades
+  CHECK(shades.size() > 20U);  // white, dark, and three between come from 2 x 2 samples alone
+}
+
 TEST_CASE("captions are drawn where asked for and leave the rest alone") {
   render::Renderer renderer = software();
   render::ViewParameters view = surfaces::bare_view(480, 270);
@@ -277,10 +341,9 @@ TEST_CASE("every style of the catalogue draws its own picture") {
     render::ViewParameters view = surfaces::bare_view(200, 150);
     view.style = row.name;
     view.outline_width = 2.2;
-    pictures.push_back(render::draw_frame(
-        renderer, surfaces::frame_of(surfaces::state_of({surfaces::disc(turn(60, {1, 0, 0}))}), view)));
-    for (std::size_t k = 0; k + 1 < pictures.size(); ++k)
-      CHECK(render::difference(pictures[k], pictures.back()).rmse > 1);
+    pictures.push_back(
+        render::draw_frame(renderer, surfaces::frame_of(surfaces::state_of({surfaces::disc(turn(60, {1, 0, 0}))}), view)));
+    for (std::size_t k = 0; k + 1 < pictures.size(); ++k) CHECK(render::difference(pictures[k], pictures.back()).rmse > 1);
   }
   CHECK_THAT(support::message_of([] { render::find_style("opaqe"); }), Catch::Contains("did you mean 'opaque'"));
 }

@@ -56,8 +56,7 @@ TEST_CASE("a section does not depend on where the parametrisation has its pole")
   const Eigen::Matrix3d r = turn(30, {0, 1, 0});
   std::vector<double> areas;
   for (const Eigen::Matrix3d& q : {turn(0, {0, 0, 1}), turn(90, {1, 0, 0}), turn(90, {0, 1, 0}), turn(40, {1, 2, 3})}) {
-    const auto x =
-        surfaces::vesicle([&](const Vec3& s) -> Vec3 { return r * Vec3(1.5, 0.8, 0.9).cwiseProduct(q * s); });
+    const auto x = surfaces::vesicle([&](const Vec3& s) -> Vec3 { return r * Vec3(1.5, 0.8, 0.9).cwiseProduct(q * s); });
     const std::vector<ClosedCurve> curves = render::cut(x.position, {});
     REQUIRE(curves.size() == 1);
     areas.push_back(render::enclosed_area(curves[0]));

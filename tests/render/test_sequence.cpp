@@ -16,8 +16,7 @@ namespace {
 
 /// Two consecutive states of a motion x(s, t) with velocity v(s, t), the second `h` later than the first, at `start`.
 std::pair<sim::State, sim::State> two_states(const std::function<Vec3(const Vec3&, double)>& x,
-                                             const std::function<Vec3(const Vec3&, double)>& v, double start,
-                                             double h) {
+                                             const std::function<Vec3(const Vec3&, double)>& v, double start, double h) {
   const auto at = [&](double t) { return surfaces::coefficients(8, [&](const Vec3& s) { return x(s, t); }); };
   const auto rate = [&](double t) { return surfaces::coefficients(8, [&](const Vec3& s) { return v(s, t); }); };
   sim::VesicleState a = surfaces::sphere(), b = surfaces::sphere();
@@ -42,7 +41,8 @@ std::pair<sim::State, sim::State> rotating_ellipsoid(double h) {
   const auto x = [=](const Vec3& s, double t) -> Vec3 {
     return turn(t * 180 / std::acos(-1.0), spin) * axes.cwiseProduct(s);
   };
-  return two_states(x, [=](const Vec3& s, double t) -> Vec3 { return spin.cross(x(s, t)); }, 0.4, h);
+  return two_states(
+      x, [=](const Vec3& s, double t) -> Vec3 { return spin.cross(x(s, t)); }, 0.4, h);
 }
 
 double largest(const sim::Matrix& m) { return m.cwiseAbs().maxCoeff(); }
@@ -60,8 +60,8 @@ TEST_CASE("a motion that is cubic in time is interpolated exactly, and so is its
   for (const double u : {0.01, 0.3, 0.5, 0.99}) {
     const double t = 1.5 + 0.7 * u;
     const sim::State middle = render::interpolated(a, b, t);
-    const sim::Coefficients position = surfaces::coefficients(8, [&](const Vec3& s) { return x(s, t); }),
-                            velocity = surfaces::coefficients(8, [&](const Vec3& s) { return v(s, t); });
+    const sim::Coefficients position = surfaces::coefficients(8, [&](const Vec3&s) { return x(s, t); }),
+                            velocity = surfaces::coefficients(8, [&](const Vec3&s) { return v(s, t); });
     CHECK(middle.time == t);
     CHECK(largest(middle.vesicles[0].position.values - position.values) < 1e-12);
     CHECK(largest(middle.vesicles[0].velocity.values - velocity.values) < 1e-11);

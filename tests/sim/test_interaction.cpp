@@ -1,3 +1,4 @@
+#include "sim/placements.h"
 #include "surfaces.h"
 
 #include <catch2/catch.hpp>
@@ -125,7 +126,7 @@ TEST_CASE("the smooth rule and the near rule agree where both are accurate") {
   const std::vector<Densities> densities{{test::smooth_field(8, 5, 3, 1), test::smooth_field(8, 5, 3, 2)},
                                          {test::smooth_field(8, 5, 3, 3), test::smooth_field(8, 5, 3, 4)}};
   const auto velocity = [&](double spacings, int order) {
-    return induced_velocity(plan_interaction(plans, x, materials, {order, true, {48, 64}, spacings}), densities);
+    return induced_velocity(plan_interaction(plans, x, materials, {order, true, {48, 64}, spacings, 0}), densities);
   };
   const auto near = velocity(100, 0), smooth = velocity(0, 60);
   for (int k = 0; k < 2; ++k)
@@ -251,4 +252,82 @@ TEST_CASE("a pair gives the same bits with one and with two threads") {
   };
   const bool same = run(1) == run(2);
   CHECK(same);
+}
+
+TEST_CASE("placements put as many vesicles as asked at the volume fraction asked, without overlap, and alike each time") {
+  for (const auto& row : placement_catalogue()) {
+    if (row.name == "file") continue;
+    Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 4), 0.1, 1);
+    PlacementParameters p;
+    p.kind = row.name;
+    p.count = 8;
+    p.volume_fraction = 0.08;
+    p.jitter = 0.05;
+    p.orientation = "random";
+    scene.placements = {p};
+    const Scene full = placed(scene), again = placed(scene);
+    INFO(row.name);
+    REQUIRE(full.vesicles.size() == 8);
+    CHECK(full.placements.empty());
+    std::vector<Coefficients> x;
+    for (std::size_t k = 0; k < 8; ++k) {
+      CHECK(full.vesicles[k].center == again.vesicles[k].center);
+      x.push_back(initial_position(full.vesicles[k]));
+    }
+    Plans plans;
+    const Gap gap = smallest_gap(plans, x);
+    CHECK_FALSE(gap.crossing);
+    if (row.name != "lattice") CHECK(gap.distance >= p.gap * (1 - 1e-6));
+  }
+}
+
+TEST_CASE("a volume fraction that cannot be placed is refused with how many could") {
+  Scene scene = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
+  PlacementParameters p;
+  p.kind = "box";
+  p.count = 60;
+  p.volume_fraction = 0.7;
+  scene.placements = {p};
+  CHECK_THROWS_WITH(placed(scene), Catch::Contains("of 60 vesicles could be placed"));
+}
+
+TEST_CASE("repulsion pushes two vesicles apart with opposite forces, and not at all when it is off") {
+  Plans plans;
+  std::vector<Coefficients> x;
+  for (const double side : {-1.0, 1.0}) {
+    VesicleParameters v = test::vesicle("sphere", 1, 8);
+    v.center = {side * 1.02, 0, 0};
+    x.push_back(initial_position(v));
+  }
+  const std::vector<Material> materials(2);
+  const Interaction w = plan_interaction(plans, x, materials, {});
+  const auto force = repulsion(w, 2, 0.1);
+  const Basis basis(8, 20);
+  std::vector<Vec3> net;
+  for (int k = 0; k < 2; ++k)
+    net.push_back(basis.synthesize(force[k]).values.transpose() * geometry(basis, x[k]).dA);
+  CHECK(net[0][0] < -1e-3);
+  CHECK((net[0] + net[1]).norm() < 1e-9);
+  CHECK(repulsion(w, 0, 0.1)[0].values.norm() == 0);
+}
+
+TEST_CASE("a volume of many vesicles gives the same velocities by the coarse and the fine source grid") {
+  Plans plans;
+  Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 6, 5), 0.1, 1);
+  PlacementParameters p;
+  p.count = 8;
+  p.volume_fraction = 0.01;  // far apart: all pairs take the coarse grid
+  scene.placements = {p};
+  scene = placed(scene);
+  std::vector<Coefficients> x;
+  std::vector<Densities> densities;
+  for (unsigned k = 0; k < 8; ++k) {
+    x.push_back(initial_position(scene.vesicles[k]));
+    densities.push_back({test::smooth_field(6, 6, 3, k), test::smooth_field(6, 6, 3, 50 + k)});
+  }
+  const std::vector<Material> materials(8, {5, 0.01, 0});
+  const auto coarse = induced_velocity(plan_interaction(plans, x, materials, {}), densities);
+  const auto fine = induced_velocity(plan_interaction(plans, x, materials, {40, true, {48, 64}, 4, 0}), densities);
+  // The densities reach the highest degree; what the coarse grid aliases of them decays like (size/distance)^p.
+  for (int k = 0; k < 8; ++k) CHECK((coarse[k].values - fine[k].values).norm() < 2e-5 * fine[k].values.norm());
 }

@@ -228,7 +228,11 @@ def main():
             page.append("")
     text = "\n".join(page)
     if given.page:
-        Path(given.page).write_text(text)
+        path, paper = Path(given.page), "\n## The paper, item by item"
+        before = path.read_text() if path.exists() else ""
+        if paper in before:  # what `tanktread reproduce` measured stays
+            text += before[before.index(paper):]
+        path.write_text(text)
     else:
         print(text)
     return 1 if study.failures else 0

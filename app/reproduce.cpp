@@ -1,0 +1,79 @@
+// The command reproduce: a catalogue of the paper's tables and figures.
+#include "commands.h"
+#include "interrupt.h"
+#include "reproduce_items.h"
+
+#include "sim/catalogue.h"
+
+#include <fmt/format.h>
+
+namespace app {
+
+namespace {
+
+struct Reproduction {
+  std::string_view name, meaning;
+  Report (*function)(const Effort&);
+};
+
+constexpr Reproduction reproductions[] = {
+    {"table2", "upsampling that the mean curvature needs", reproduce_upsampling},
+    {"table3", "convergence of the double layer", reproduce_double_layer},
+    {"table4", "stable time steps of the schemes", reproduce_stable_steps},
+    {"table5", "iterations and singular integrals", reproduce_cost},
+    {"fig2", "aliasing of associated Legendre functions", reproduce_aliasing},
+    {"fig3", "spectra of position and mean curvature", reproduce_spectra},
+    {"fig4", "a biconcave vesicle in Poiseuille flow", reproduce_poiseuille},
+    {"fig5", "error of one block iteration against distance", reproduce_block_error},
+    {"fig6", "two vesicles in shear flow", reproduce_two_vesicles},
+};
+
+void print_catalogue() {
+  for (const Reproduction& item : reproductions) fmt::print("{:<8} {}\n", item.name, item.meaning);
+  fmt::print("{:<8} {}\n", "all", "all of these");
+}
+
+}  // namespace
+
+void stop_if_interrupted() {
+  if (interrupted()) throw Interrupted();
+}
+
+int reproduce(const Options& options) {
+  if (options.word.empty()) {
+    print_catalogue();
+    return 0;
+  }
+  std::vector<std::string_view> names{"all"};
+  for (const Reproduction& item : reproductions) names.push_back(item.name);
+  if (std::find(names.begin(), names.end(), options.word) == names.end())
+    throw std::runtime_error(fmt::format("'{}' is not a table or figure to reproduce{}", options.word,
+                                         sim::suggestion(options.word, names)));
+  if (options.quick && options.full) throw std::runtime_error("--quick and --full exclude each other");
+  const std::filesystem::path folder = options.output.empty() ? "reproduce" : options.output;
+  Options here = options;
+  here.output = folder;
+  for (const Reproduction& item : reproductions) {
+    if (options.word != "all" && options.word != item.name) continue;
+    const std::string name(item.name);
+    Progress progress(name, options.quiet);
+    try {
+      const Report report = item.function({options.quick, options.full, here, progress});
+      progress.clear();
+      const std::string command =
+          fmt::format("tanktread reproduce {}{}{}", name, options.quick ? " --quick" : "", options.full ? " --full" : "");
+      const std::vector<std::filesystem::path> files = write_report(report, folder, name, command);
+      if (options.quiet) continue;
+      fmt::print("{}\n", plain_text(report));
+      for (const std::filesystem::path& file : files) fmt::print("{}\n", file.string());
+      fmt::print("\n");
+    } catch (const Interrupted&) {
+      progress.clear();
+      fmt::print(stderr, "tanktread: interrupted in {}; nothing of it is kept\n", name);
+      return interrupted_status;
+    }
+  }
+  return 0;
+}
+
+}  // namespace app

@@ -1,0 +1,51 @@
+// The tables and figures of the paper, one function each.
+#pragma once
+
+#include "options.h"
+#include "progress.h"
+#include "reproduce_report.h"
+
+#include "sim/parameters.h"
+
+namespace app {
+
+/// How much is asked for.
+struct Effort {
+  bool quick = false;  ///< small orders and short times: does it run at all
+  bool full = false;   ///< the orders that take hours, too
+  const Options& options;
+  Progress& progress;
+};
+
+/// Thrown by reproductions when the user interrupts.
+struct Interrupted {};
+void stop_if_interrupted();
+
+Report reproduce_upsampling(const Effort&);           // Table 2
+Report reproduce_double_layer(const Effort&);         // Table 3
+Report reproduce_stable_steps(const Effort&);         // Table 4
+Report reproduce_cost(const Effort&);                 // Table 5
+Report reproduce_aliasing(const Effort&);             // Figure 2
+Report reproduce_spectra(const Effort&);              // Figure 3
+Report reproduce_poiseuille(const Effort&);           // Figure 4
+Report reproduce_block_error(const Effort&);          // Figure 5
+Report reproduce_two_vesicles(const Effort&);         // Figure 6
+
+/// The four shapes of tables 2 and 3; the paper's are only pictured.
+struct NamedShape {
+  std::string name;
+  sim::VesicleParameters parameters;  ///< at any order
+};
+const std::vector<NamedShape>& reference_shapes();
+
+/// One prolate of reduced volume 0.85 and area 4 pi along x in the shear flow u = z e_x, kappa_b = 0.01.
+sim::Scene sheared_prolate(int order, double viscosity_contrast);
+/// Two of them with centres -+(1.2, 0, -0.5): scenes/two-vesicles.toml.
+sim::Scene sheared_pair(int order, double viscosity_contrast);
+
+/// The physics and pictures of figures 4 and 6, as scene files: scenes/parachute.toml at the paper's steps, and
+/// scenes/two-vesicles.toml.
+extern const char* const poiseuille_scene;
+extern const char* const two_vesicles_scene;
+
+}  // namespace app
