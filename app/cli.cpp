@@ -10,6 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <cstdio>
+
 #include <charconv>
 
 namespace app {
@@ -128,6 +130,14 @@ void check_command_word(int argc, char** argv) {
     throw std::runtime_error(fmt::format("'{}' is not a command{}", argv[1], sim::suggestion(argv[1], names)));
 }
 
+/// One line to stderr; a closed stderr is no reason to fail in another way.
+void complain(std::string_view sentence) noexcept {
+  std::fprintf(stderr, "tanktread: %.*s\n", int(sentence.size()), sentence.data());
+}
+
+/// Whether all that was printed has arrived; a full disk behind stdout is an error like any other.
+bool output_arrived() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -143,7 +153,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& success) {
       return program.exit(success);
     } catch (const CLI::ParseError& error) {
-      fmt::print(stderr, "tanktread: {}\n", error.what());
+      complain(error.what());
       return 2;
     }
     render::parse_gl_choice(options.gl);
@@ -151,13 +161,15 @@ int main(int argc, char** argv) {
     for (const Command& command : commands)
       if (program.got_subcommand(std::string(command.name))) {
         options.command = command.name;
-        return command.function(options);
+        const int status = command.function(options);
+        if (!output_arrived()) throw std::runtime_error("cannot write to standard output");
+        return status;
       }
     return 2;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "tanktread: there is not enough memory\n");
+    complain("there is not enough memory");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "tanktread: {}\n", error.what());
+    complain(error.what());
   }
   return 1;
 }

@@ -15,6 +15,8 @@ namespace app {
 
 int info(const Options& options) {
   const std::filesystem::path& path = options.inputs.front();
+  if (std::filesystem::is_directory(path))
+    throw std::runtime_error(fmt::format("'{}' is a folder; give a trajectory, a scene or a frame in it", path.string()));
   if (!std::filesystem::is_regular_file(path))
     throw std::runtime_error(fmt::format("there is no file '{}'", path.string()));
   char start[8] = {};

@@ -20,16 +20,20 @@ void write_whole_file(const fs::path& path, const std::string& text) {
     if (!std::cout) throw std::runtime_error("cannot write to standard output");
     return;
   }
-  const fs::path draft = path.string() + ".tmp";
+  std::error_code error;
+  const fs::path target = fs::is_symlink(path, error) ? fs::canonical(path, error) : path;
+  // A pipe or a device is written to as it is; only a file can be replaced by a complete one.
+  const bool replaces = error || !fs::exists(target, error) || fs::is_regular_file(target, error);
+  const fs::path draft = replaces ? fs::path(target.string() + ".tmp") : target;
   std::ofstream out(draft, std::ios::binary);
   out << text;
   out.close();
   const int reason = errno;
-  std::error_code error;
-  if (out) fs::rename(draft, path, error);
+  error.clear();
+  if (out && replaces) fs::rename(draft, target, error);
   if (out && !error) return;
   const std::string why = error ? error.message() : std::strerror(reason);
-  fs::remove(draft, error);
+  if (replaces) fs::remove(draft, error);
   throw std::runtime_error(fmt::format("cannot write '{}': {}", path.string(), why));
 }
 

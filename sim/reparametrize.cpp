@@ -52,11 +52,12 @@ Relabelling relabel(Plans& plans, const Coefficients& x, int grid_order, double 
   const int p = x.order, cutoff = (p + 1) / 2;
   const Basis& basis = plans.basis(grid_order, grid_order);
   const double scale = band_norm(x, 1, p);
-  Relabelling r{grid_order, grid_directions(basis), 0, 0, 0};
+  Relabelling r;
+  Matrix map = grid_directions(basis);
   double first_gradient = -1, least = -1, step = 1;
-  Matrix best_map = r.map, direction;
+  Matrix best_map = map, direction;
   for (int iteration = 0; iteration <= most; ++iteration) {
-    const FirstDerivatives y = sample_points_first(x, r.map);
+    const FirstDerivatives y = sample_points_first(x, map);
     Coefficients gradient = basis.analyze(y.value);
     const double kept = band_norm(gradient, cutoff, p), lost = band_norm(gradient, p + 1, grid_order);
     const double energy = weight_kept * kept * kept + lost * lost;
@@ -64,45 +65,50 @@ Relabelling relabel(Plans& plans, const Coefficients& x, int grid_order, double 
     if (least >= 0 && energy >= least) {  // the step was too long: go back and take half of it
       step /= 2;
       if (step < 0.1) break;
-      r.map = (best_map + step * direction).rowwise().normalized();
+      map = (best_map + step * direction).rowwise().normalized();
       continue;
     }
     least = energy;
-    best_map = r.map;
+    best_map = map;
     r.high_after = std::hypot(kept, lost) / scale;
     r.lost = lost / scale;
     gradient.values.topRows(cutoff * cutoff).setZero();
     gradient.values.middleRows(cutoff * cutoff, coefficient_count(p) - cutoff * cutoff) *= weight_kept;
     const Matrix slope = basis.synthesize(gradient).values;
     double length = 0;
-    direction.resize(r.map.rows(), 3);
-    for (Eigen::Index k = 0; k < r.map.rows(); ++k) {
-      const Vec3 s = r.map.row(k).transpose(), x_t = y.t.row(k).transpose(), x_f = y.f.row(k).transpose();
+    direction.resize(map.rows(), 3);
+    for (Eigen::Index k = 0; k < map.rows(); ++k) {
+      const Vec3 s = map.row(k).transpose(), x_t = y.t.row(k).transpose(), x_f = y.f.row(k).transpose();
       const Vec3 g = slope.row(k).transpose(), normal = x_t.cross(x_f).normalized();
       length += (g - g.dot(normal) * normal).squaredNorm() * basis.weights()[k];
       direction.row(k) = parameter_shift(sphere_frame(s), x_t, x_f, -g).transpose();
     }
-    r.map = (best_map + step * direction).rowwise().normalized();
+    map = (best_map + step * direction).rowwise().normalized();
     if (first_gradient < 0) first_gradient = length;
     if (!std::isfinite(length)) throw std::domain_error("reparametrization: the surface is not regular");
     if (length <= stop * stop * first_gradient) break;
   }
-  r.map = std::move(best_map);
+  r.map = basis.analyze(best_map);
   return r;
 }
 
-Coefficients pulled_back(Plans& plans, const Relabelling& r, const Coefficients& f) {
-  return plans.basis(f.order, r.grid_order).analyze(sample_points(f, r.map));
+Matrix mapped(const Relabelling& r, const Matrix& parameters) {
+  return sample_points(r.map, parameters).rowwise().normalized();
 }
 
-Matrix carried_points(Plans& plans, const Relabelling& r, const Coefficients& before, const Coefficients& after,
+Matrix mapped(const Relabelling& r, const Basis& basis) { return mapped(r, grid_directions(basis)); }
+
+Coefficients pulled_back(Plans& plans, const Relabelling& r, const Coefficients& f) {
+  const Basis& basis = plans.basis(f.order, std::max(r.map.order, f.order));
+  return basis.analyze(sample_points(f, mapped(r, basis)));
+}
+
+Matrix carried_points(const Relabelling& r, const Coefficients& before, const Coefficients& after,
                       const Matrix& parameters) {
-  const Coefficients map = plans.basis(r.grid_order, r.grid_order).analyze(r.map);
   const Matrix target = sample_points(before, parameters);
   Matrix s = parameters;
   for (int iteration = 0; iteration < 20; ++iteration) {  // inverse of the map: s' <- s' + (s - map(s'))
-    const Matrix image = sample_points(map, s).rowwise().normalized();
-    s = (s + parameters - image).rowwise().normalized();
+    s = (s + parameters - mapped(r, s)).rowwise().normalized();
   }
   for (int iteration = 0; iteration < 20; ++iteration) {  // Gauss-Newton onto the nearest point of the new surface
     const FirstDerivatives x = sample_points_first(after, s);

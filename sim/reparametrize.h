@@ -10,10 +10,9 @@
 
 namespace sim {
 
-/// s = map(s') at the points of the grid of `grid_order`: rows of unit vectors.
+/// s = map(s'): the normalised sum of these coefficients (3 fields, of the degree of the grid it was found on).
 struct Relabelling {
-  int grid_order = 0;
-  Matrix map;
+  Coefficients map;
   double high_before = 0, high_after = 0;  ///< norm of the degrees >= p/2 relative to x without its mean
   double lost = 0;                         ///< norm of the degrees beyond p after it, likewise: the truncation error
 };
@@ -22,14 +21,18 @@ struct Relabelling {
 double high_degree_share(const Coefficients& position);
 
 /// Descends until the projected gradient has fallen to `stop` of its first value, or for `most` iterations.
-Relabelling relabel(Plans&, const Coefficients& position, int grid_order, double stop = 0.05, int most = 30);
+Relabelling relabel(Plans&, const Coefficients& position, int grid_order, double stop = 0.05, int most = 12);
+
+/// map(s') at given parameters s' (rows of unit vectors), and at the points of a grid.
+Matrix mapped(const Relabelling&, const Matrix& parameters);
+Matrix mapped(const Relabelling&, const Basis&);
 
 /// f(map(s')) projected on the degree of f.
 Coefficients pulled_back(Plans&, const Relabelling&, const Coefficients& f);
 
 /// Parameters s' (rows of unit vectors) of the points of `after` nearest to before(s), s given as rows; the search
 /// starts at the inverse of the map.
-Matrix carried_points(Plans&, const Relabelling&, const Coefficients& before, const Coefficients& after,
+Matrix carried_points(const Relabelling&, const Coefficients& before, const Coefficients& after,
                       const Matrix& parameters);
 
 }  // namespace sim

@@ -149,7 +149,7 @@ double energy_of(Plans& plans, const Coefficients& x) {
 /// Moves the grid points along the membrane and carries everything that belongs to the material. False: it would not pay.
 bool relabel_vesicle(const Setting& s, VesicleDynamics& v) {
   const int p = v.position.order;
-  const Relabelling r = relabel(s.plans, v.position, std::max(2 * p, v.labels.order));
+  const Relabelling r = relabel(s.plans, v.position, 2 * p);
   // Truncating the relabelled surface is an error that stays; a relabelling must lose little of the shape.
   constexpr double least_gain = 0.9, most_lost = 0.05;
   if (r.high_after > least_gain * r.high_before || r.lost > most_lost * (r.high_before - r.high_after)) {
@@ -160,7 +160,7 @@ bool relabel_vesicle(const Setting& s, VesicleDynamics& v) {
   for (Coefficients* c : {&v.position, &v.displacement, &v.motion.velocity, &v.motion.tension, &v.labels,
                           &v.saved_position, &v.saved_velocity})
     *c = pulled_back(s.plans, r, *c);
-  v.tracers = carried_points(s.plans, r, before, v.position, v.tracers);
+  v.tracers = carried_points(r, before, v.position, v.tracers);
   v.high_share = high_degree_share(v.position);
   ++v.relabelled;
   return true;

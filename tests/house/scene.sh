@@ -26,7 +26,7 @@ if command -v ffmpeg >/dev/null; then
 fi
 [ -z "$(find "$folder/out" -name '*.tmp' -o -name '*.lock')" ] || fail "something half-written was left behind"
 "$program" info "$folder/out/trajectory.h5" | grep -q '^states' || fail "info does not tell the states"
-"$program" export "$folder/out/trajectory.h5" --csv - | head -n 1 | grep -q '^step,time,vesicle,area,' || fail "export"
+"$program" export "$folder/out/trajectory.h5" --csv - | sed -n 1p | grep -q '^step,time,vesicle,area,' || fail "export"
 
 "$program" run "$scene" -o "$folder/out" "${shorten[@]}" >"$folder/log"
 grep -q ' 0 frames drawn' "$folder/log" || fail "a second run drew frames again"
