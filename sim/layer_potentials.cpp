@@ -1,5 +1,6 @@
 #include "layer_potentials.h"
 
+#include "folded_grid.h"
 #include "small_product.h"
 
 #include <algorithm>
@@ -26,84 +27,6 @@ struct LaneBuffer {
   };
   std::unique_ptr<Lane[], Free> data;
   Lane* get() const { return data.get(); }
-};
-
-/// Longitudes of a grid of nlon points fall into orbits {f, -f, pi-f, pi+f} of a quarter; cosines and sines of even and odd
-/// m are even or odd under the two mirrors, which leaves four products of a quarter of the size.
-struct Quarter {
-  int index[4];  ///< of f, -f, pi - f, pi + f; -1 where the orbit has no such member of its own
-};
-
-/// Fourier and Legendre tables of one grid for degree p, folded by all mirror symmetries of the grid.
-struct FoldedGrid {
-  int p, nlat, nlon, half;  ///< half: latitudes of the northern half, the equator included
-  std::vector<Quarter> orbits;
-  struct Block {               ///< one of cos/sin x even/odd m
-    std::vector<int> m;
-    std::vector<double> table;       ///< m x orbits: basis function at the orbit's first longitude
-    std::vector<double> transposed;  ///< orbits x m
-  };
-  std::array<Block, 4> blocks;         ///< cos even, cos odd, sin even, sin odd
-  std::vector<std::vector<double>> legendre[2];  ///< [parity of n-m][m]: (n) x half, values, without weights
-  std::vector<std::vector<double>> synthesis[2]; ///< [parity][m]: (2 half) x (n): values, then derivatives
-  Vector theta, weight;                ///< of all latitudes; Gauss-Legendre
-
-  FoldedGrid(int degree, int grid_order);
-  int mirror(int i) const { return nlat - 1 - i; }
-};
-
-FoldedGrid::FoldedGrid(int degree, int grid_order)
-    : p(degree), nlat(grid_order + 1), nlon(2 * grid_order + 2), half((nlat + 1) / 2) {
-  const GaussLegendre rule = gauss_legendre(nlat);
-  theta = rule.theta;
-  weight = rule.weight;
-  for (int l = 0; 4 * l <= nlon; ++l) {
-    Quarter quarter{{l, (nlon - l) % nlon, nlon / 2 - l, nlon / 2 + l}};
-    if (l == 0) quarter.index[1] = quarter.index[3] = -1;
-    if (4 * l == nlon) quarter.index[2] = quarter.index[3] = -1;
-    orbits.push_back(quarter);
-  }
-  for (int m = 0; m <= p; ++m) blocks[m % 2].m.push_back(m);
-  for (int m = 1; m <= p; ++m) blocks[2 + m % 2].m.push_back(m);
-  for (int b = 0; b < 4; ++b) {
-    Block& block = blocks[b];
-    const std::size_t rows = block.m.size(), columns = orbits.size();
-    block.table.resize(rows * columns);
-    block.transposed.resize(rows * columns);
-    for (std::size_t r = 0; r < rows; ++r)
-      for (std::size_t l = 0; l < columns; ++l) {
-        const int m = block.m[r];
-        const double angle = 2 * pi * double(m) * double(l) / nlon, k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
-        block.table[r * columns + l] = block.transposed[l * rows + r] = k * (b < 2 ? std::cos(angle) : std::sin(angle));
-      }
-  }
-  const LegendreTable table = legendre_table(p, theta);
-  for (int parity = 0; parity < 2; ++parity)
-    for (int m = 0; m <= p; ++m) {
-      const int count = (p - m - parity + 2) / 2;
-      std::vector<double> analysis(std::size_t(count) * half), synth(std::size_t(2 * half) * count);
-      for (int k = 0; k < count; ++k)
-        for (int i = 0; i < half; ++i) {
-          const int column = legendre_index(p, m + parity + 2 * k, m);
-          analysis[std::size_t(k) * half + i] = table.value(i, column);
-          synth[std::size_t(i) * count + k] = table.value(i, column);
-          synth[std::size_t(half + i) * count + k] = table.d1(i, column);
-        }
-      legendre[parity].push_back(std::move(analysis));
-      synthesis[parity].push_back(std::move(synth));
-    }
-}
-
-/// Row of (parity, block, m) among the intermediate spectra: latitude parity is the outermost index.
-struct SpectrumRows {
-  std::array<int, 4> first{};
-  int count = 0;
-  explicit SpectrumRows(const FoldedGrid& g) {
-    for (int b = 0; b < 4; ++b) {
-      first[b] = count;
-      count += int(g.blocks[b].m.size());
-    }
-  }
 };
 
 }  // namespace
