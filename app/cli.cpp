@@ -10,9 +10,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <cstdio>
-
+#include <cerrno>
 #include <charconv>
+#include <cstdio>
+#include <system_error>
 
 namespace app {
 
@@ -135,8 +136,11 @@ void complain(std::string_view sentence) noexcept {
   std::fprintf(stderr, "tanktread: %.*s\n", int(sentence.size()), sentence.data());
 }
 
-/// Whether all that was printed has arrived; a full disk behind stdout is an error like any other.
-bool output_arrived() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+/// A full disk behind stdout is an error like any other.
+void require_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw std::system_error(errno, std::generic_category(), "cannot write to standard output");
+}
 
 }  // namespace
 
@@ -162,12 +166,16 @@ int main(int argc, char** argv) {
       if (program.got_subcommand(std::string(command.name))) {
         options.command = command.name;
         const int status = command.function(options);
-        if (!output_arrived()) throw std::runtime_error("cannot write to standard output");
+        require_output();
         return status;
       }
     return 2;
   } catch (const std::bad_alloc&) {
     complain("there is not enough memory");
+  } catch (const std::system_error& error) {
+    // The reader of a pipe has seen enough, as `head` does: nothing to complain of.
+    if (error.code() == std::errc::broken_pipe) return 0;
+    complain(error.what());
   } catch (const std::exception& error) {
     complain(error.what());
   }

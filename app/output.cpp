@@ -6,9 +6,10 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <iostream>
+#include <system_error>
 
 namespace app {
 
@@ -16,8 +17,8 @@ namespace fs = std::filesystem;
 
 void write_whole_file(const fs::path& path, const std::string& text) {
   if (path == "-") {
-    std::cout << text << std::flush;
-    if (!std::cout) throw std::runtime_error("cannot write to standard output");
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+      throw std::system_error(errno, std::generic_category(), "cannot write to standard output");
     return;
   }
   std::error_code error;

@@ -25,8 +25,8 @@ if command -v ffmpeg >/dev/null; then
   [ -s "$folder/out/movie.mp4" ] || fail "there is no movie.mp4"
 fi
 [ -z "$(find "$folder/out" -name '*.tmp' -o -name '*.lock')" ] || fail "something half-written was left behind"
-"$program" info "$folder/out/trajectory.h5" | grep -q '^states' || fail "info does not tell the states"
-"$program" export "$folder/out/trajectory.h5" --csv - | sed -n 1p | grep -q '^step,time,vesicle,area,' || fail "export"
+"$program" info "$folder/out/trajectory.h5" | grep '^states' >/dev/null || fail "info does not tell the states"
+"$program" export "$folder/out/trajectory.h5" --csv - | sed -n 1p | grep '^step,time,vesicle,area,' >/dev/null || fail "export"
 
 "$program" run "$scene" -o "$folder/out" "${shorten[@]}" >"$folder/log"
 grep -q ' 0 frames drawn' "$folder/log" || fail "a second run drew frames again"

@@ -36,9 +36,9 @@ TEST_CASE("a nearly spherical drop relaxes at the rate -40 (lambda+1)/((2 lambda
   Plans plans;
   for (const double lambda : {0.2, 1.0, 5.0}) {
     const Membrane m = freeze_membrane(plans, {lambda, 0, 0}, x, 3, 2 * p);
-    Coefficients gamma{p, Matrix::Zero(nc, 1)};
-    gamma.values(0, 0) = std::sqrt(4 * pi);
-    const Coefficients force = implicit_force(m, 0, {{p, Matrix::Zero(nc, 3)}, gamma});
+    Motion still = test::at_rest(p);
+    still.tension.values(0, 0) = std::sqrt(4 * pi);  // gamma = 1
+    const Coefficients force = implicit_force(m, 0, still);
     const Coefficients right = m.layers.single.apply(force);
     const auto left = [&](const Vector& y) {
       const Coefficients u{p, y.reshaped(nc, 3)};
