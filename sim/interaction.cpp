@@ -217,17 +217,13 @@ double winding(const Sources& s, const Vec3& x) {
   return sum / (4 * pi);
 }
 
-}  // namespace
-
-namespace {
-
 /// Two parameters on two surfaces, and Newton for the least distance between them.
 struct Approach {
   Vec3 s, t;  ///< parameters on the first and the second surface
   double distance = 0;
 };
 
-/// Gradient of |x - y|^2 / 2 in tangent coordinates q about (s, t).
+/// |x - y|^2 / 2 in tangent coordinates q about (s, t).
 struct ApproachSlope {
   const Coefficients &x, &y;
   Vec3 s, t, a1, a2, b1, b2;

@@ -12,8 +12,8 @@ constexpr double pi = std::numbers::pi;
 }  // namespace
 
 NearestPoint nearest_point(const Coefficients& x, const Vec3& target, const Vec3& start) {
-  // Newton on |x(s) - target|^2 in the tangent plane of s. The Hessian is taken by differences of the gradient and
-  // replaced by Gauss-Newton's where it is not positive; a step that does not come nearer is halved.
+  // Gauss-Newton on |x(s) - target|^2 in the tangent plane of s: the metric is positive, so that every step descends; one
+  // that does not come nearer is halved.
   Vec3 s = start.normalized();
   NearestPoint best;
   const auto at = [&](const Vec3& d) { return sample_points_first(x, d.transpose()); };
