@@ -4,11 +4,14 @@
 #include "interrupt.h"
 #include "version.h"
 
+#include "render/compare.h"
 #include "render/context.h"
 #include "sim/catalogue.h"
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
@@ -100,6 +103,39 @@ constexpr OptionRow option_rows[] = {
     {"quick",
      [](CLI::App& app, Options& o) { app.add_flag("--quick", o.quick, "low orders and short times: does it run at all"); }},
     {"full", [](CLI::App& app, Options& o) { app.add_flag("--full", o.full, "also the orders that take hours"); }},
+    {"thresholds",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--preset", o.preset, "exact, default or perceptual; the options below change its thresholds")
+           ->capture_default_str();
+       const render::CompareRule rule;
+       render::visit(rule, [&](const char* name, const char* meaning, const double&) {
+         app.add_option_function<double>(std::string("--") + name,
+                                         [&o, name](double value) { o.limits.emplace_back(name, value); }, meaning)
+             ->check(CLI::NonNegativeNumber);
+       });
+     }},
+    {"ignore",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--mask", o.mask, "a picture of the same size: what is white in it does not count")
+           ->check(CLI::ExistingFile);
+       app.add_option("--ignore", o.ignore, "a rectangle that does not count (any number of times)")
+           ->allow_extra_args(false)
+           ->type_name("X,Y,WxH");
+     }},
+    {"json", [](CLI::App& app, Options& o) { app.add_flag("--json", o.json, "print one JSON document instead of lines"); }},
+    {"junit", [](CLI::App& app, Options& o) { app.add_option("--junit", o.junit, "write JUnit XML")->type_name("FILE"); }},
+    {"html",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--html", o.html, "write a page to look at the differences")->type_name("DIR");
+     }},
+    {"diff",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--diff", o.diff, "write difference pictures, x 16")->type_name("DIR");
+     }},
+    {"update",
+     [](CLI::App& app, Options& o) {
+       app.add_flag("--update", o.update, "accept: put what differs or is new in the place of the expected");
+     }},
     {"markdown",
      [](CLI::App& app, Options& o) { app.add_flag("--markdown", o.markdown, "with parameters: docs/reference.md"); }},
 };
@@ -136,6 +172,12 @@ void complain(std::string_view sentence) noexcept {
   std::fprintf(stderr, "tanktread: %.*s\n", int(sentence.size()), sentence.data());
 }
 
+/// Where a standard stream is closed, the next file opened would take its number, and with it what is meant for the stream.
+void occupy_standard_streams() {
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd)
+    if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != fd) return;  // writing there stays an error
+}
+
 /// A full disk behind stdout is an error like any other.
 void require_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
@@ -145,6 +187,7 @@ void require_output() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupy_standard_streams();
   try {
     check_command_word(argc, argv);
     Options options;

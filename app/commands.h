@@ -16,6 +16,7 @@ int render(const Options&);
 int figure(const Options&);
 int info(const Options&);
 int export_table(const Options&);
+int compare(const Options&);  ///< 0 same, 1 different, 2 could not compare
 int list(const Options&);
 int reproduce(const Options&);
 
@@ -39,6 +40,8 @@ inline constexpr Command commands[] = {
      figure},
     {"info", "what a trajectory, a scene or a frame holds", "", "FILE", false, "set", info},
     {"export", "a table of measures: one row per saved state and vesicle", "", "TRAJECTORY", false, "csv", export_table},
+    {"compare", "pictures against expected ones, a pair of files or of folders: status 0 same, 1 different, 2 neither",
+     "EXPECTED", "ACTUAL", false, "thresholds ignore json junit html diff update quiet", compare},
     {"reproduce", "recomputes a table or figure of the method's paper; without ITEM, tells which", "ITEM", "", false,
      "output quiet gl quick full", reproduce},
     {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, parameters", "KIND", "", false, "markdown",

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 
 namespace render {
@@ -28,12 +27,6 @@ const Tables& tables() {
     return t;
   }();
   return made;
-}
-
-void check_same_size(const Image& a, const Image& b) {
-  if (a.width != b.width || a.height != b.height)
-    throw std::invalid_argument("pictures of different size: " + std::to_string(a.width) + "x" + std::to_string(a.height) +
-                                " and " + std::to_string(b.width) + "x" + std::to_string(b.height));
 }
 
 // Sums of one row of blocks: row-wise accumulation keeps memory access sequential.
@@ -79,41 +72,6 @@ Image downsample(const Image& source, int factor, RowOrder rows) {
                            : add_row<3>(source_row(k), result.width, factor, table.linear, sums.data());
     for (std::size_t i = 0; i < sums.size(); ++i) out[i] = table.encoded[(sums[i] * scale + half) >> 32];
   }
-  return result;
-}
-
-ImageDifference difference(const Image& a, const Image& b) {
-  check_same_size(a, b);
-  ImageDifference result;
-  std::int64_t squares = 0;
-  for (int y = 0; y < a.height; ++y)
-    for (int x = 0; x < a.width; ++x) {
-      const std::uint8_t *p = a.at(x, y), *q = b.at(x, y);
-      int worst = 0;
-      for (int c = 0; c < 3; ++c) {
-        const int d = std::abs(p[c] - q[c]);
-        worst = std::max(worst, d);
-        squares += d * d;
-      }
-      result.maximum = std::max(result.maximum, worst);
-      result.above_two += worst > 2;
-    }
-  const double samples = 3.0 * a.width * a.height;
-  result.rmse = samples > 0 ? std::sqrt(static_cast<double>(squares) / samples) : 0;
-  return result;
-}
-
-bool same_picture(const ImageDifference& d, std::int64_t pixels) {
-  return static_cast<double>(d.above_two) <= std::max(10.0, 2e-5 * static_cast<double>(pixels)) && d.rmse <= 0.15;
-}
-
-Image difference_image(const Image& a, const Image& b, int gain) {
-  check_same_size(a, b);
-  Image result(a.width, a.height, 3);
-  for (int y = 0; y < a.height; ++y)
-    for (int x = 0; x < a.width; ++x)
-      for (int c = 0; c < 3; ++c)
-        result.at(x, y)[c] = static_cast<std::uint8_t>(std::min(255, gain * std::abs(a.at(x, y)[c] - b.at(x, y)[c])));
   return result;
 }
 

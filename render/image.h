@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -36,20 +37,6 @@ enum class RowOrder { top_first, bottom_first };
 /// first).
 Image downsample(const Image& source, int factor, RowOrder rows = RowOrder::top_first);
 
-/// Where two pictures of one size differ: channels are compared as 8-bit values.
-struct ImageDifference {
-  int maximum = 0;             ///< largest difference of a channel
-  std::int64_t above_two = 0;  ///< pixels with a channel that differs by more than 2
-  double rmse = 0;             ///< root mean square over all channels, in 8-bit units
-};
-/// Throws std::invalid_argument when the sizes differ. Only red, green, blue count.
-ImageDifference difference(const Image& a, const Image& b);
-/// The rule for pictures of one scene drawn by different Mesa versions or processors: at most max(10, 2e-5 N) of the
-/// N pixels differ by more than 2, and the root mean square is at most 0.15.
-bool same_picture(const ImageDifference&, std::int64_t pixels);
-/// |a - b| x gain, saturated: what to look at when they differ.
-Image difference_image(const Image& a, const Image& b, int gain = 16);
-
 /// Key and text of the text chunks of a PNG file; keys 1-79 Latin characters, text UTF-8.
 using PngText = std::vector<std::pair<std::string, std::string>>;
 
@@ -58,12 +45,18 @@ using PngText = std::vector<std::pair<std::string, std::string>>;
 /// compression: zlib level 0-9; no PNG filter, which suits flat, smooth pictures best.
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text = {}, int compression = 6);
 
+/// The bytes of such a file.
+std::string png_bytes(const Image& image, const PngText& text = {}, int compression = 6);
+
 struct PngFile {
   Image image;  ///< RGB, or RGBA when the file has transparency
   PngText text;
 };
-/// Throws std::runtime_error with one sentence: cannot be opened, is no PNG file, or is damaged (and how).
+/// Throws std::runtime_error with one sentence: cannot be opened, is no PNG file, is larger than 1 GiB when unpacked, or is
+/// damaged (and how). No memory is taken for a size that the file's own length cannot hold.
 PngFile read_png(const std::filesystem::path& path);
+/// The same from an open file, which is left open; `name` is for messages.
+PngFile read_png(std::FILE* file, const std::filesystem::path& name);
 /// The text chunks alone; the whole file is read and checked for damage all the same.
 PngText read_png_text(const std::filesystem::path& path);
 

@@ -1,6 +1,7 @@
 // Surfaces with known shapes, as states of a vesicle.
 #pragma once
 
+#include "render/compare.h"
 #include "render/mesh.h"
 #include "render/parameters.h"
 #include "render/scene.h"

@@ -131,15 +131,3 @@ TEST_CASE("a picture that cannot be written names path and reason and leaves not
                Catch::Contains("full.png: cannot be written: No space left"));
   CHECK_FALSE(std::filesystem::exists(folder / "full.png"));
 }
-
-TEST_CASE("pictures that differ are told apart by the rule") {
-  const Image a = pattern(100, 100, 3);
-  Image b = a;
-  CHECK(render::same_picture(render::difference(a, b), 10000));
-  for (int i = 0; i < 11; ++i) b.at(i, 50)[1] = static_cast<std::uint8_t>(b.at(i, 50)[1] ^ 0x40);
-  const render::ImageDifference d = render::difference(a, b);
-  CHECK(d.above_two == 11);
-  CHECK(d.maximum == 64);
-  CHECK_FALSE(render::same_picture(d, 10000));
-  CHECK_THROWS_AS(render::difference(a, Image(3, 3, 3)), std::invalid_argument);
-}

@@ -154,9 +154,9 @@ TEST_CASE("lines belong to the material: another parametrisation draws the same 
   const Image front = picture(turn(-90, {0, 0, 1}));  // the mesh's first column faces the viewer
   for (const Eigen::Matrix3d& r : {turn(20, {0, 0, 1}), turn(90, {1, 0, 0}), turn(63, {1, -2, 3})}) {
     const render::ImageDifference d = render::difference(front, picture(r));
-    INFO("max " << d.maximum << " above two " << d.above_two << " rmse " << d.rmse);
+    INFO("max " << d.maximum << " above two " << d.above << " rmse " << d.rmse);
     CHECK(d.rmse < 1.2);  // contours are polygons of other points: a few pixels there
-    CHECK(d.above_two < 0.012 * 400 * 400);
+    CHECK(d.above < 0.012 * 400 * 400);
   }
   view.lines = "grid";
   CHECK(render::difference(front, picture(turn(63, {1, -2, 3}))).rmse > 5);
@@ -253,7 +253,7 @@ TEST_CASE("an arrow that would touch a membrane's picture is left out, one besid
     frame.view.flow_arrows = true;
     frame.arrows.points = Vec3(x, y, 0).transpose();
     frame.arrows.velocities = Vec3(1, 0, 0).transpose();
-    return render::difference(render::draw_frame(renderer, without), render::draw_frame(renderer, frame)).above_two;
+    return render::difference(render::draw_frame(renderer, without), render::draw_frame(renderer, frame)).above;
   };
   CHECK(changed(1.6, 0) > 30);
   CHECK(changed(1.05, 0) == 0);
