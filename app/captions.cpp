@@ -19,6 +19,12 @@ double deformation_rate(const sim::FlowParameters& flow, double radius) {
 
 }  // namespace
 
+double flow_rate(const sim::Scene& scene, double area_radius) {
+  double rate = 0;
+  for (const sim::FlowParameters& flow : scene.flows) rate = std::max(rate, deformation_rate(flow, area_radius));
+  return rate;
+}
+
 TimeUnit time_unit(const sim::Scene& scene) {
   const bool shear = scene.flows.size() == 1 && scene.flows[0].kind == "shear" && scene.flows[0].time_factor == "constant" &&
                      scene.flows[0].rate != 0;
@@ -46,8 +52,7 @@ std::string parameter_caption(const sim::Scene& scene, double area_radius, doubl
     if (words.size() > most) words = {fmt::format("{} to {}", words.front(), words.back())};
     text += fmt::format("{}{} = {}", text.empty() ? "" : "   ", symbol, fmt::join(words, ", "));
   };
-  double rate = 0;
-  for (const sim::FlowParameters& flow : scene.flows) rate = std::max(rate, deformation_rate(flow, area_radius));
+  const double rate = flow_rate(scene, area_radius);
   const double gravity = scene.buoyancy.gravity.norm();
   add("Ca", [&](const sim::VesicleParameters& v) {
     return v.bending_modulus > 0 ? rate * std::pow(area_radius, 3) / v.bending_modulus : 0;

@@ -12,6 +12,9 @@ struct TimeUnit {
 };
 TimeUnit time_unit(const sim::Scene&);
 
+/// Rate of deformation at the size of a vesicle, 1/time: the largest of all flows; 0: none that deforms.
+double flow_rate(const sim::Scene&, double area_radius);
+
 /// "γ̇t = 12.50" in a steady shear flow, "t = 12.50" otherwise.
 std::string time_caption(const sim::Scene&, double time);
 /// "Ca = 100   λ = 1   ν = 0.85": area_radius and reduced_volume of the first vesicle, as

@@ -1,8 +1,10 @@
 #include "catalogues.h"
 
 #include "render/camera.h"
+#include "render/colormap.h"
 #include "render/figure.h"
 #include "render/style.h"
+#include "sim/fields.h"
 #include "sim/flows.h"
 #include "sim/placements.h"
 #include "sim/shapes.h"
@@ -32,6 +34,9 @@ const std::vector<Catalogue>& catalogues() {
       {"schemes", "time stepping schemes", words(sim::scheme_catalogue())},
       {"cameras", "directions of view", words(render::cameras())},
       {"styles", "ways to paint a vesicle", words(render::styles())},
+      {"fields", "scalars on a membrane, for the style field", words(sim::field_catalogue())},
+      {"colour_maps", "colours of a field", words(render::colour_maps())},
+      {"colours", "colours of vesicles, in the order in which they are given out", words(render::body_colours())},
       {"figures", "figures drawn from a trajectory", words(render::figures())}};
   return all;
 }

@@ -1,6 +1,7 @@
 #include "frames.h"
 
 #include "captions.h"
+#include "fields.h"
 #include "interrupt.h"
 #include "movie.h"
 #include "output.h"
@@ -8,8 +9,10 @@
 #include "scene_text.h"
 #include "version.h"
 
+#include "render/cutaway.h"
 #include "render/draw.h"
 #include "render/sequence.h"
+#include "render/style.h"
 #include "sim/diagnostics.h"
 #include "sim/flows.h"
 
@@ -19,6 +22,7 @@
 
 #include <cmath>
 #include <future>
+#include <numeric>
 
 namespace app {
 
@@ -59,6 +63,7 @@ struct Production {
   double arrow_speed = 0;
   std::string parameters;
   double area_radius = 1;
+  Painting painting;
   std::string hash;  ///< of everything that a frame depends on besides its time
 };
 
@@ -72,13 +77,15 @@ render::FlowArrows arrows_of(const Production& p, const render::StateSummary& su
 }
 
 Production prepare(const sim::TrajectoryReader& trajectory, const Settings& settings) {
-  Production p{settings, {}, 0, {}, 1, {}};
+  Production p{settings, {}, 0, {}, 1, {}, {}};
   const std::int64_t states = trajectory.count();
   // A few hundred instants are enough to frame a movie.
   const std::int64_t stride = std::max<std::int64_t>(1, states / 400);
   std::vector<render::StateSummary> summaries;
   std::vector<double> times;
-  for (std::int64_t k = 0; k < states; k = k + 1 < states ? std::min(k + stride, states - 1) : states) {
+  std::vector<std::int64_t> chosen;
+  for (std::int64_t k = 0; k < states; k = k + 1 < states ? std::min(k + stride, states - 1) : states) chosen.push_back(k);
+  for (const std::int64_t k : chosen) {
     const sim::State state = trajectory.state(k);
     summaries.push_back(render::summarize(state));
     times.push_back(state.time);
@@ -92,18 +99,27 @@ Production prepare(const sim::TrajectoryReader& trajectory, const Settings& sett
   sim::Plans plans;
   const sim::VesicleMeasures measures = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
   p.area_radius = std::sqrt(measures.area / sim::default_area);
+  p.painting = plan_painting(trajectory, chosen, settings, p.area_radius);
   p.parameters = parameter_caption(settings.scene, p.area_radius, measures.reduced_volume);
   p.hash = fmt::format("{}-{}-{}", picture_hash(settings), states, version());
   return p;
 }
 
-render::Image draw(render::Renderer& renderer, const Production& p, const sim::State& state,
+render::Image draw(render::Renderer& renderer, sim::Plans& plans, const Production& p, const sim::State& state,
                    const std::shared_ptr<const render::MeshPlan>& plan) {
   render::Frame frame;
   frame.view = p.settings.view;
-  for (std::size_t v = 0; v < state.vesicles.size(); ++v)
-    frame.bodies.push_back({render::make_mesh(plan, state.vesicles[v]),
-                            render::body_colours[v % std::size(render::body_colours)]});
+  const render::StyleRow& style = render::find_style(frame.view.style);
+  for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
+    std::optional<sim::Coefficients> field;
+    if (p.painting.field) field = painted_field(plans, p.painting, p.settings, state, v);
+    frame.bodies.push_back(
+        {render::make_mesh(plan, state.vesicles[v], field ? &*field : nullptr), p.painting.bodies[v], {}});
+    if (style.cut)
+      frame.bodies.back().cut =
+          render::make_cut(state.vesicles[v].position, frame.view.cut_normal, frame.view.cut_offset);
+  }
+  frame.legend = p.painting.legend;
   const render::StateSummary summary = render::summarize(state);
   frame.camera = render::make_camera(p.framing, summary.centroid);
   frame.arrows = arrows_of(p, summary, state.time);
@@ -179,6 +195,7 @@ FrameReport render_frames(const sim::TrajectoryReader& trajectory, const Setting
     }
   };
   const auto plan = std::make_shared<const render::MeshPlan>();
+  sim::Plans plans;
   std::future<void> writing;  // one picture is compressed while the next is drawn
   Progress progress("rendering", options.quiet);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -195,7 +212,7 @@ FrameReport render_frames(const sim::TrajectoryReader& trajectory, const Setting
     }
     if (!renderer) renderer.emplace(render::parse_gl_choice(options.gl), options.shader_dir);
     const sim::State state = state_at(trajectory, times[task.number]);
-    auto image = std::make_shared<render::Image>(draw(*renderer, production, state, plan));
+    auto image = std::make_shared<render::Image>(draw(*renderer, plans, production, state, plan));
     to_movie([&] { encoder->add(*image); });
     render::PngText text{{"Title", settings.scene.title},
                          {"Software", "tanktread " + version()},
@@ -224,17 +241,23 @@ std::vector<render::Image> draw_stills(const sim::TrajectoryReader& trajectory, 
   plain.view.flow_arrows = plain.view.time_stamp = plain.view.caption = plain.view.scale_bar = false;
   render::Renderer renderer(render::parse_gl_choice(options.gl), options.shader_dir);
   const auto plan = std::make_shared<const render::MeshPlan>();
+  sim::Plans plans;
+  std::vector<std::int64_t> states(static_cast<std::size_t>(trajectory.count()));
+  std::iota(states.begin(), states.end(), 0);
+  const double area = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1).area;
+  const Painting painting = plan_painting(trajectory, states, plain, std::sqrt(area / sim::default_area));
   std::vector<render::Image> images;
   for (const Still& still : stills) {
     const sim::State state = state_at(trajectory, still.time);
     plain.view.size = {still.width, still.height};
-    Production p{plain, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view), 0, {}, 1, {}};
+    Production p{plain, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view), 0, {}, 1, {}, {}};
+    p.painting = painting;
     const glm::dvec3 target(still.target[0], still.target[1], still.target[2]);
     p.framing.depth += glm::length(target - p.framing.target);
     p.framing.follows = false;
     p.framing.target = target;
     p.framing.half_height = still.half_height;
-    images.push_back(draw(renderer, p, state, plan));
+    images.push_back(draw(renderer, plans, p, state, plan));
   }
   return images;
 }

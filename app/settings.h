@@ -9,6 +9,7 @@ namespace app {
 struct Settings {
   sim::Scene scene;
   render::ViewParameters view;
+  std::vector<render::KeyFrameParameters> key_frames;
   render::MovieParameters movie;
   std::vector<render::FigureParameters> figures;
 };
@@ -19,6 +20,7 @@ template <class S, class V>
 void visit_sections(S& settings, V&& v) {
   sim::visit_sections(settings.scene, v);
   v(sim::Section{"view", "how a frame looks", false}, settings.view);
+  v(sim::Section{"key_frame", "the camera at one time; several make it move", false}, settings.key_frames);
   v(sim::Section{"movie", "which frames there are", false}, settings.movie);
   v(sim::Section{"figure", "one figure a table", false}, settings.figures);
 }

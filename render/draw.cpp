@@ -2,6 +2,7 @@
 
 #include "arrow_shape.h"
 #include "assets.h"
+#include "depth_order.h"
 #include "style.h"
 
 #include <algorithm>
@@ -85,8 +86,11 @@ Renderer::Renderer(const GlChoice& choice, std::filesystem::path shader_dir)
       shader_dir_(std::move(shader_dir)),
       nothing_(context_.gl()),
       bodies_(context_.gl()),
+      ghosts_(context_.gl()),
+      ribbons_(context_.gl()),
       arrows_(context_.gl()),
-      beads_(context_.gl()) {
+      beads_(context_.gl()),
+      palette_(context_.gl()) {
   for (const auto& [array, shape] : {std::pair{&arrows_, arrow_shape()}, std::pair{&beads_, bead_shape()}}) {
     array->attribute(0, shape.position);
     array->attribute(1, shape.normal);
@@ -209,6 +213,21 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
   const Program& p = program("body", body_defines(style, frame.view, tracers.size()));
   p.use();
   set_camera(p, frame.camera);
+  if (style.field) {
+    if (!frame.legend || body.mesh.scalar.size() != body.mesh.position.size())
+      throw std::invalid_argument("the style 'field' needs a legend, and a scalar on every mesh");
+    const double low = frame.legend->low, width = frame.legend->high - low;
+    std::vector<float> shares;
+    for (const float value : body.mesh.scalar) shares.push_back(static_cast<float>((value - low) / width));
+    bodies_.attribute(6, shares);
+    palette_.bind();
+    p.set("u_map", 0);
+  }
+  if (style.cut) {
+    const Cut cut = body.cut.value_or(Cut{{0, 0, 0}, 1, {}});  // of nothing
+    p.set("u_cut", std::array{glm::vec4(cut.normal, -cut.height)});
+    p.set("u_contour_width", samples(frame.view, frame.view.outline_width, 1.0));
+  }
   const glm::vec3 colour = linear(style.own_colour ? body.colour : white);
   p.set("u_colour", colour);
   p.set("u_line_colour", 0.07F * colour + glm::vec3(0.010F, 0.012F, 0.018F));
@@ -244,7 +263,129 @@ void Renderer::draw_outline(const Frame& frame, const Body& body, double wider, 
   gl.CullFace(GL_BACK);
 }
 
+// All membranes in one draw, farthest triangle first.
+void Renderer::draw_ghosts(const Frame& frame) {
+  const Gl& gl = context_.gl();
+  const StyleRow& style = find_style(frame.view.style);
+  std::vector<glm::vec3> positions, normals, labels, colours;
+  std::vector<glm::vec4> dots, next_dots;
+  std::size_t tracers = 0;
+  double radius = 0;
+  for (const Body& body : frame.bodies) {
+    const auto append = [](auto& all, const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
+    append(positions, body.mesh.position);
+    append(normals, body.mesh.normal);
+    append(labels, frame.view.lines == "grid" ? body.mesh.plan->parameters() : body.mesh.label);
+    colours.resize(positions.size(), linear(style.own_colour ? body.colour : white));
+    tracers = std::max(tracers, body.mesh.tracers.size());
+    radius = std::max(radius, body.mesh.area_radius);
+  }
+  const bool dotted = style.tracers && frame.view.tracers && tracers > 0;
+  if (dotted)
+    for (const Body& body : frame.bodies) {
+      const auto place = [&](float k) {
+        if (k < 0) return glm::vec4(0, 0, 0, -1);
+        const Mesh::Tracer& t = body.mesh.tracers[static_cast<std::size_t>(k)];
+        return glm::vec4(glm::vec3(frame.camera.view * glm::vec4(t.position, 1)), t.bright ? 1 : 0);
+      };
+      for (const glm::vec2& nearest : nearest_tracers(body.mesh)) {
+        dots.push_back(place(nearest.x));
+        next_dots.push_back(place(nearest.y));
+      }
+    }
+  const Program& p = program("body", body_defines(style, frame.view, tracers));
+  p.use();
+  set_camera(p, frame.camera);
+  p.set("u_line_colour", glm::vec3(0.010F, 0.012F, 0.018F));
+  p.set("u_contour", glm::vec3(0.10F, 0.11F, 0.14F));
+  p.set("u_contour_width", samples(frame.view, frame.view.outline_width, 1.0));
+  p.set("u_half_width", samples(frame.view, frame.view.line_width / 2, 0.42));
+  p.set("u_opacity", static_cast<float>(frame.view.opacity));
+  ghosts_.attribute(0, positions);
+  ghosts_.attribute(1, normals);
+  ghosts_.attribute(2, labels);
+  ghosts_.attribute(5, colours);
+  if (dotted) {
+    ghosts_.attribute(3, dots);
+    ghosts_.attribute(4, next_dots);
+    p.set("u_tracer_bright", linear(tracer_bright));
+    p.set("u_tracer_dark", linear(tracer_dark));
+    p.set("u_tracer_radius", static_cast<float>(tracer_radius * radius));
+  }
+  const std::vector<std::uint32_t> triangles = back_to_front(frame.bodies, frame.camera);
+  ghosts_.indices(triangles);
+  gl.Enable(GL_BLEND);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl.Disable(GL_DEPTH_TEST);
+  gl.Disable(GL_CULL_FACE);
+  gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(triangles.size()), GL_UNSIGNED_INT, nullptr);
+  gl.Enable(GL_CULL_FACE);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.Disable(GL_BLEND);
+}
+
+// The rims that the plane leaves: a bright core between two dark lines, like the membrane's thickness under a lens.
+void Renderer::draw_cut_edges(const Frame& frame) {
+  const Gl& gl = context_.gl();
+  const Program& p = program("ribbon", "");
+  const float line = samples(frame.view, std::max(frame.view.outline_width, 1.6), 1.0);
+  const float core = 0.9F * line, half_width = core + 0.9F * line;
+  const glm::dvec2 sample(2.0 / framebuffer_->width(), 2.0 / framebuffer_->height());  // clip units
+  p.use();
+  p.set("u_core", core);
+  p.set("u_half_width", half_width);
+  gl.Enable(GL_BLEND);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl.DepthMask(GL_FALSE);
+  gl.Disable(GL_CULL_FACE);
+  for (const Body& body : frame.bodies) {
+    if (!body.cut) continue;
+    p.set("u_colour", vector_of({0.5 + 0.5 * body.colour.r, 0.5 + 0.5 * body.colour.g, 0.5 + 0.5 * body.colour.b}));
+    p.set("u_rim", vector_of(outline_colour(body)));
+    for (const std::vector<glm::dvec3>& edge : body.cut->edges) {
+      const std::size_t n = edge.size();
+      if (n < 3) continue;
+      std::vector<glm::dvec4> clips;
+      for (const glm::dvec3& point : edge) {
+        glm::dvec4 eye = glm::dmat4(frame.camera.view) * glm::dvec4(point, 1);
+        eye.z += 0.004 * body.mesh.area_radius;  // in front of the membrane that it bounds
+        clips.push_back(glm::dmat4(frame.camera.projection) * eye);
+      }
+      std::vector<glm::vec4> strip;
+      std::vector<float> across;
+      const float reach = half_width + 1;
+      for (std::size_t k = 0; k <= n; ++k) {
+        const glm::dvec4 &before = clips[(k + n - 1) % n], &here = clips[k % n], &after = clips[(k + 1) % n];
+        const glm::dvec2 along = (glm::dvec2(after) / after.w - glm::dvec2(before) / before.w) / sample;
+        const glm::dvec2 side = glm::dvec2(-along.y, along.x) / std::max(glm::length(along), 1e-9) * sample * here.w;
+        for (const float sign : {-1.0F, 1.0F}) {
+          strip.emplace_back(glm::dvec2(here) + static_cast<double>(sign * reach) * side, here.z, here.w);
+          across.push_back(sign * reach);
+        }
+      }
+      ribbons_.attribute(0, strip);
+      ribbons_.attribute(1, across);
+      gl.DrawArrays(GL_TRIANGLE_STRIP, 0, static_cast<GLsizei>(strip.size()));
+    }
+  }
+  gl.Enable(GL_CULL_FACE);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
+}
+
 void Renderer::draw_bodies(const Frame& frame) {
+  const StyleRow& style = find_style(frame.view.style);
+  if (style.see_through) return draw_ghosts(frame);
+  if (style.field && frame.legend) palette_.fill(frame.legend->colours);
+  if (style.cut) {
+    const Gl& gl = context_.gl();
+    gl.Enable(GL_CLIP_DISTANCE0);
+    gl.Disable(GL_CULL_FACE);
+    for (const Body& body : frame.bodies) draw_body(frame, body);
+    gl.Disable(GL_CLIP_DISTANCE0);
+    gl.Enable(GL_CULL_FACE);
+    return draw_cut_edges(frame);
+  }
   const bool outlined = frame.view.outline_width > 0;
   for (const Body& body : frame.bodies) {
     draw_body(frame, body);

@@ -32,6 +32,8 @@ class Renderer {
   void draw_ground(const Frame&);
   void draw_arrows(const Frame&);
   void draw_bodies(const Frame&);
+  void draw_ghosts(const Frame&);
+  void draw_cut_edges(const Frame&);
   void upload(const Body&);
   void draw_body(const Frame&, const Body&);
   /// Of the body uploaded last, `wider` samples than the view's outline.
@@ -41,7 +43,8 @@ class Renderer {
   GlContext context_;
   std::filesystem::path shader_dir_;
   std::map<std::string, Program> programs_;  ///< by name and defines
-  VertexArray nothing_, bodies_, arrows_, beads_;
+  VertexArray nothing_, bodies_, ghosts_, ribbons_, arrows_, beads_;
+  Palette palette_;
   std::shared_ptr<const MeshPlan> uploaded_plan_;
   std::optional<Framebuffer> framebuffer_;
   Image samples_;

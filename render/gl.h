@@ -11,6 +11,7 @@ namespace render {
   X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
   X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
   X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)               \
+  X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
   X(PFNGLBLENDFUNCPROC, BlendFunc)                             \
   X(PFNGLBUFFERDATAPROC, BufferData)                           \
@@ -26,6 +27,7 @@ namespace render {
   X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
   X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)         \
   X(PFNGLDELETESHADERPROC, DeleteShader)                       \
+  X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
   X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)           \
   X(PFNGLDEPTHFUNCPROC, DepthFunc)                             \
   X(PFNGLDEPTHMASKPROC, DepthMask)                             \
@@ -41,6 +43,7 @@ namespace render {
   X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
   X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
   X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)               \
+  X(PFNGLGENTEXTURESPROC, GenTextures)                         \
   X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
   X(PFNGLGETERRORPROC, GetError)                               \
   X(PFNGLGETINTEGERVPROC, GetIntegerv)                         \
@@ -55,6 +58,8 @@ namespace render {
   X(PFNGLREADPIXELSPROC, ReadPixels)                           \
   X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
+  X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
+  X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
   X(PFNGLUNIFORM1FPROC, Uniform1f)                             \
   X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
   X(PFNGLUNIFORM2FVPROC, Uniform2fv)                           \

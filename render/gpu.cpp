@@ -81,6 +81,9 @@ VertexArray::~VertexArray() {
 
 void VertexArray::bind() const { gl_->BindVertexArray(id_); }
 
+void VertexArray::attribute(GLuint location, std::span<const float> data, GLuint divisor) {
+  upload(location, 1, std::as_bytes(data), divisor);
+}
 void VertexArray::attribute(GLuint location, std::span<const glm::vec2> data, GLuint divisor) {
   upload(location, 2, std::as_bytes(data), divisor);
 }
@@ -104,6 +107,24 @@ void VertexArray::indices(std::span<const std::uint32_t> data) {
   bind();
   gl_->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
   gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(data.size_bytes()), data.data(), GL_STATIC_DRAW);
+}
+
+Palette::Palette(const Gl& gl) : gl_(&gl) {
+  gl.GenTextures(1, &id_);
+  bind();
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+}
+
+Palette::~Palette() { gl_->DeleteTextures(1, &id_); }
+void Palette::bind() const { gl_->BindTexture(GL_TEXTURE_2D, id_); }
+
+void Palette::fill(std::span<const std::array<std::uint8_t, 3>> colours) {
+  bind();
+  gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, static_cast<GLsizei>(colours.size()), 1, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                  colours.data());
 }
 
 Framebuffer::Framebuffer(const Gl& gl, int width, int height) : gl_(&gl), width_(width), height_(height) {

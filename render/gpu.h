@@ -46,6 +46,7 @@ class VertexArray {
 
   void bind() const;
   /// Attribute `location` takes one element of `data` a vertex; divisor 1: one an instance.
+  void attribute(GLuint location, std::span<const float> data, GLuint divisor = 0);
   void attribute(GLuint location, std::span<const glm::vec2> data, GLuint divisor = 0);
   void attribute(GLuint location, std::span<const glm::vec3> data, GLuint divisor = 0);
   void attribute(GLuint location, std::span<const glm::vec4> data, GLuint divisor = 0);
@@ -53,10 +54,25 @@ class VertexArray {
 
  private:
   void upload(GLuint location, int components, std::span<const std::byte> data, GLuint divisor);
-  static constexpr std::size_t attributes = 4;
+  static constexpr std::size_t attributes = 7;
   const Gl* gl_;
   GLuint id_ = 0, index_buffer_ = 0;
   std::array<GLuint, attributes> buffers_{};
+};
+
+/// One row of RGB texels, read by texelFetch from texture unit 0.
+class Palette {
+ public:
+  explicit Palette(const Gl& gl);
+  ~Palette();
+  Palette(const Palette&) = delete;
+
+  void fill(std::span<const std::array<std::uint8_t, 3>> colours);
+  void bind() const;
+
+ private:
+  const Gl* gl_;
+  GLuint id_ = 0;
 };
 
 /// RGBA8 + depth. The colours are sRGB-encoded by the shaders; a target that encodes by itself would differ between

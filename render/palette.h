@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <string_view>
+#include <vector>
 
 namespace render {
 
@@ -12,17 +14,23 @@ struct Colour {
 };
 
 /// Membranes, in the order of the scene's vesicles; neighbours differ in hue and in lightness.
-inline constexpr std::array<Colour, 8> body_colours{{
-    {0.89, 0.50, 0.42},  // coral
-    {0.47, 0.66, 0.86},  // sky
-    {0.93, 0.76, 0.40},  // amber
-    {0.35, 0.68, 0.58},  // bluish green
-    {0.72, 0.55, 0.78},  // lilac
-    {0.62, 0.66, 0.72},  // slate
-    {0.84, 0.62, 0.70},  // rose
-    {0.55, 0.48, 0.40},  // umber
-}};
-constexpr Colour body_colour(std::size_t vesicle) { return body_colours[vesicle % body_colours.size()]; }
+struct ColourRow {
+  std::string_view name;
+  std::string_view meaning;
+  Colour colour;
+};
+inline const std::vector<ColourRow>& body_colours() {
+  static const std::vector<ColourRow> rows{
+      {"coral", "#e3806b", {0.89, 0.50, 0.42}}, {"sky", "#78a8db", {0.47, 0.66, 0.86}},
+      {"amber", "#edc266", {0.93, 0.76, 0.40}}, {"jade", "#59ad94", {0.35, 0.68, 0.58}},
+      {"lilac", "#b88cc7", {0.72, 0.55, 0.78}}, {"slate", "#9ea8b8", {0.62, 0.66, 0.72}},
+      {"rose", "#d69eb3", {0.84, 0.62, 0.70}},  {"umber", "#8c7a66", {0.55, 0.48, 0.40}},
+  };
+  return rows;
+}
+inline Colour body_colour(std::size_t vesicle) { return body_colours()[vesicle % body_colours().size()].colour; }
+/// A name of body_colours(), or "#rrggbb". Throws std::invalid_argument that names the nearest known name.
+Colour parse_colour(std::string_view text);
 
 /// Okabe and Ito's colours, for curves on white; yellow left out.
 inline constexpr std::array<Colour, 7> curve_colours{{

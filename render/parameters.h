@@ -8,18 +8,33 @@ namespace render {
 
 using sim::Parameter;
 
-inline constexpr std::array<std::string_view, 3> follow_names{"auto", "always", "never"};
+inline constexpr std::array<std::string_view, 4> follow_names{"auto", "always", "never", "vesicle"};
 inline constexpr std::array<std::string_view, 2> projection_names{"perspective", "orthographic"};
 inline constexpr std::array<std::string_view, 2> line_names{"material", "grid"};
 inline constexpr std::array<std::string_view, 2> background_names{"gradient", "white"};
+inline constexpr std::array<std::string_view, 5> colour_by_names{"order", "viscosity_contrast", "bending_modulus",
+                                                                 "density_difference", "reduced_volume"};
 
 /// [view]: how a frame looks.
 struct ViewParameters {
   std::string camera = "flow-gradient";
-  std::string follow = "auto";  ///< auto: follow the centroid once the drift exceeds a few radii
+  std::vector<std::string> views;  ///< several cameras in one frame; empty: the one above
+  std::string follow = "auto";     ///< auto: follow the centroid once the drift exceeds a few radii
+  int follow_vesicle = 0;
   std::string projection = "perspective";
-  double zoom = 1;  ///< 1: everything that happens in the movie fits, with room for captions
+  double zoom = 1;   ///< 1: everything that happens in the movie fits, with room for captions
+  double orbit = 0;  ///< degrees per unit of time, about the z axis
+  std::optional<sim::Vec3> eye, target;
+  sim::Vec3 up = sim::Vec3::UnitZ();
   std::string style = "opaque";
+  std::string field = "tension";
+  std::optional<std::string> colour_map;
+  std::vector<double> field_range;  ///< lowest and highest; empty: over the whole movie
+  double opacity = 0.30;            ///< of a ghost's membrane seen straight on
+  sim::Vec3 cut_normal = -sim::Vec3::UnitY();
+  double cut_offset = 0;
+  std::vector<std::string> colours;
+  std::string colour_by = "order";
   std::vector<int> size{1920, 1080};  ///< width, height
   int supersampling = 2;
   std::string lines = "material";
@@ -32,6 +47,11 @@ struct ViewParameters {
   bool time_stamp = true;
   bool caption = true;
   bool scale_bar = true;
+  bool title = false;
+  bool triad = false;
+  bool flow_profile = false;
+  bool inset = false;
+  bool colour_bar = true;
   std::string background = "gradient";
 };
 
@@ -39,11 +59,21 @@ template <class P, class V>
 requires std::same_as<std::remove_const_t<P>, ViewParameters>
 void visit(P& p, V&& v) {
   v(Parameter{.name = "camera", .unit = "", .meaning = "direction of view", .catalogue = "cameras"}, p.camera);
+  v(Parameter{.name = "views",
+              .unit = "",
+              .meaning = "several directions of view side by side in one frame; empty: the camera alone",
+              .catalogue = "cameras"},
+    p.views);
   v(Parameter{.name = "follow",
               .unit = "",
-              .meaning = "move with the centroid; auto: when it drifts by more than a few radii",
+              .meaning = "move with the centroid of all, or with one vesicle; auto: when it drifts by more than a few radii",
               .choices = follow_names},
     p.follow);
+  v(Parameter{.name = "follow_vesicle",
+              .unit = "",
+              .meaning = "which one, counted from 0, when follow is vesicle",
+              .minimum = 0},
+    p.follow_vesicle);
   v(Parameter{.name = "projection",
               .unit = "",
               .meaning = "perspective, or orthographic to measure in the picture",
@@ -55,7 +85,58 @@ void visit(P& p, V&& v) {
               .minimum = 0.05,
               .maximum = 50},
     p.zoom);
+  v(Parameter{.name = "orbit",
+              .unit = "degree/time",
+              .meaning = "the camera turns about the z axis at this rate",
+              .minimum = -1e5,
+              .maximum = 1e5},
+    p.orbit);
+  v(Parameter{.name = "eye",
+              .unit = "length",
+              .meaning = "where the camera stands; zoom then only narrows the angle of view",
+              .when_absent = "where camera and framing put it"},
+    p.eye);
+  v(Parameter{.name = "target",
+              .unit = "length",
+              .meaning = "the point in the middle of the picture",
+              .when_absent = "the middle of what happens in the movie"},
+    p.target);
+  v(Parameter{.name = "up", .unit = "", .meaning = "direction that points up the picture, when eye is given"}, p.up);
   v(Parameter{.name = "style", .unit = "", .meaning = "how vesicles are painted", .catalogue = "styles"}, p.style);
+  v(Parameter{.name = "field", .unit = "", .meaning = "what the style field paints", .catalogue = "fields"}, p.field);
+  v(Parameter{.name = "colour_map",
+              .unit = "",
+              .meaning = "colours of the field",
+              .catalogue = "colour_maps",
+              .when_absent = "viridis, or blue-red for fields with a sign"},
+    p.colour_map);
+  v(Parameter{.name = "field_range",
+              .unit = "",
+              .meaning = "values at both ends of the colour bar; empty: all but the outermost 0.5 % of the whole movie"},
+    p.field_range);
+  v(Parameter{.name = "opacity",
+              .unit = "",
+              .meaning = "of the membranes in the style ghost, seen straight on",
+              .minimum = 0,
+              .maximum = 1},
+    p.opacity);
+  v(Parameter{.name = "cut_normal",
+              .unit = "",
+              .meaning = "the style cutaway takes away what lies on this side of a plane"},
+    p.cut_normal);
+  v(Parameter{.name = "cut_offset",
+              .unit = "length",
+              .meaning = "of that plane from the centre of each vesicle, along cut_normal"},
+    p.cut_offset);
+  v(Parameter{.name = "colours",
+              .unit = "",
+              .meaning = "of the vesicles in turn: names of list colours, or #rrggbb; empty: all of that list"},
+    p.colours);
+  v(Parameter{.name = "colour_by",
+              .unit = "",
+              .meaning = "colour vesicles in turn, or by a quantity of theirs, on colour_map",
+              .choices = colour_by_names},
+    p.colour_by);
   v(Parameter{.name = "size", .unit = "px", .meaning = "width and height of the picture", .minimum = 16, .maximum = 8192},
     p.size);
   v(Parameter{.name = "supersampling",
@@ -98,12 +179,39 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "time_stamp", .unit = "", .meaning = "write the time"}, p.time_stamp);
   v(Parameter{.name = "caption", .unit = "", .meaning = "write the physical parameters"}, p.caption);
   v(Parameter{.name = "scale_bar", .unit = "", .meaning = "draw a bar one area radius long"}, p.scale_bar);
+  v(Parameter{.name = "title", .unit = "", .meaning = "write the title of the scene"}, p.title);
+  v(Parameter{.name = "triad", .unit = "", .meaning = "draw the directions of the axes x, y, z"}, p.triad);
+  v(Parameter{.name = "flow_profile", .unit = "", .meaning = "draw the profile of the background flow at the left edge"},
+    p.flow_profile);
+  v(Parameter{.name = "inset", .unit = "", .meaning = "draw the cross-section in the (x, z) plane in a corner"}, p.inset);
+  v(Parameter{.name = "colour_bar", .unit = "", .meaning = "draw the bar of the style field, or of colour_by"},
+    p.colour_bar);
   v(Parameter{.name = "background", .unit = "", .meaning = "the ground behind everything", .choices = background_names},
     p.background);
 }
 
+/// [[key_frame]]: where the camera is at one time; between key frames it moves smoothly.
+struct KeyFrameParameters {
+  double time = 0;
+  double azimuth = 0, elevation = 0;  ///< degrees
+  double zoom = 1;
+};
+
+template <class P, class V>
+requires std::same_as<std::remove_const_t<P>, KeyFrameParameters>
+void visit(P& p, V&& v) {
+  v(Parameter{.name = "time", .unit = "time", .meaning = "when the camera is there", .minimum = 0, .required = true}, p.time);
+  v(Parameter{.name = "azimuth", .unit = "degree", .meaning = "to the right of the flow-gradient view, about the z axis"},
+    p.azimuth);
+  v(Parameter{.name = "elevation", .unit = "degree", .meaning = "above the (x, y) plane", .minimum = -90, .maximum = 90},
+    p.elevation);
+  v(Parameter{.name = "zoom", .unit = "", .meaning = "times that of [view]", .minimum = 0.05, .maximum = 50}, p.zoom);
+}
+
 /// [movie]: which frames there are.
 struct MovieParameters {
+  std::string format = "mp4";
+  std::optional<double> poster;
   double frame_rate = 30;
   double time_per_frame = 0;  ///< 0: save_every, one frame a saved state
 };
@@ -111,6 +219,13 @@ struct MovieParameters {
 template <class P, class V>
 requires std::same_as<std::remove_const_t<P>, MovieParameters>
 void visit(P& p, V&& v) {
+  v(Parameter{.name = "format", .unit = "", .meaning = "kind of the movie file", .catalogue = "formats"}, p.format);
+  v(Parameter{.name = "poster",
+              .unit = "time",
+              .meaning = "the frame at this time is also written as poster.png",
+              .minimum = 0,
+              .when_absent = "none"},
+    p.poster);
   v(
       Parameter{
           .name = "frame_rate", .unit = "1/s", .meaning = "frames per second of the video", .minimum = 0.1, .maximum = 240},

@@ -2,15 +2,34 @@
 #pragma once
 
 #include "camera.h"
+#include "colormap.h"
 #include "mesh.h"
 #include "palette.h"
 #include "parameters.h"
 
+#include <optional>
+
 namespace render {
+
+/// What a plane takes away of a body, for the style "cutaway".
+struct Cut {
+  glm::dvec3 normal{0, -1, 0};  ///< unit vector toward the side that is taken away
+  double height = 0;            ///< the plane is normal . x = height
+  std::vector<std::vector<glm::dvec3>> edges;  ///< closed curves, the first point is not repeated
+};
 
 struct Body {
   Mesh mesh;
-  Colour colour = body_colours[0];
+  Colour colour = body_colour(0);
+  std::optional<Cut> cut;
+};
+
+/// The bar that tells the values of a field, or of the colours of whole bodies.
+struct Legend {
+  std::string label;            ///< as in Captions
+  double low = 0, high = 1;     ///< values at the ends of the map
+  ColourTable colours{};
+  bool below = false, above = false;  ///< values beyond an end occur; they have its colour
 };
 
 /// Background velocity at arrow_points(), sampled by whoever knows the flow. Where everything rests, a camera that follows
@@ -36,6 +55,7 @@ struct Frame {
   ViewParameters view;
   Captions captions;
   FlowArrows arrows;
+  std::optional<Legend> legend;  ///< needed by the style "field"
 };
 
 }  // namespace render

@@ -15,6 +15,10 @@ const std::vector<StyleRow>& styles() {
       {"checker", "patches two spacings of the grid wide", "CHECKER", false, false, true},
       {"meridian", "grid lines with one meridian and the equator in red", "MARKS", true, false, true},
       {"outline", "white membranes with lines and contours only, for print", "FLAT", true, true, false},
+      {"ghost", "see-through membranes, lines of the far side visible", "GHOST", true, true, true, true},
+      {"field", "a scalar on the membrane, to be read off a colour bar", "FIELD", true, false, true, false, true},
+      {"cutaway", "a plane opens the membranes, their section is drawn as a line", "CUTAWAY", true, true, true, false, false,
+       true},
   };
   return rows;
 }

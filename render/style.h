@@ -15,6 +15,9 @@ struct StyleRow {
   bool grid;                 ///< lines on the membrane
   bool tracers;              ///< dots, when the view wants them
   bool own_colour;           ///< the vesicle's colour; otherwise the ground's
+  bool see_through = false;  ///< drawn in order of depth, back faces too
+  bool field = false;        ///< painted by Mesh::scalar on Frame::legend
+  bool cut = false;          ///< opened by Body::cut
 };
 const std::vector<StyleRow>& styles();
 /// Throws std::invalid_argument that names the nearest known style.

@@ -3,16 +3,29 @@
 //   CHECKER     patches between PARALLELS and MERIDIANS
 //   MARKS       a red meridian and equator
 //   FLAT        unlit
-//   CONTOUR     the inner edge of the outline
+//   GHOST       see-through, both sides
+//   FIELD       colours of a map, unlit so that they can be read off its bar
+//   CUTAWAY     both sides, opened by a plane
+//   CONTOUR     the inner edge of the outline; with GHOST and CUTAWAY the whole outline
 //   TRACERS     number of tracer dots
 in vec3 v_eye, v_normal, v_label;
 out vec4 f_colour;
-uniform vec3 u_colour;       // linear
-uniform vec3 u_line_colour;  // linear
+#ifdef GHOST
+flat in vec3 v_colour;    // linear
+uniform float u_opacity;  // seen straight on
+#else
+uniform vec3 u_colour;  // linear
+#endif
+uniform vec3 u_line_colour;  // linear; with GHOST black, to which a share of the membrane's own colour is added
 uniform float u_half_width;  // of lines, samples
 uniform bool u_perspective;
 #ifdef CONTOUR
-uniform vec3 u_contour;  // sRGB
+uniform vec3 u_contour;        // sRGB
+uniform float u_contour_width; // samples, where the whole outline is drawn here
+#endif
+#ifdef FIELD
+in float v_scalar;
+uniform sampler2D u_map;  // 256 texels, sRGB
 #endif
 #ifdef TRACERS
 flat in vec4 v_dot, v_next_dot;  // the two tracers nearest to this triangle: eye space, w: 1 bright, 0 dark, -1 none
@@ -23,8 +36,35 @@ uniform float u_tracer_radius;
 void main() {
   vec3 n = normalize(v_normal);
   vec3 v = u_perspective ? normalize(-v_eye) : vec3(0.0, 0.0, 1.0);
-  vec3 albedo = u_colour;
+#ifdef GHOST
+  vec3 albedo = v_colour, line_colour = u_line_colour + 0.07 * v_colour;
+#else
+  vec3 albedo = u_colour, line_colour = u_line_colour;
+#endif
   float gloss = 1.0;
+#if defined(GHOST) || defined(CUTAWAY)
+  bool front = gl_FrontFacing;
+  if (!front) n = -n;
+#endif
+#ifdef CUTAWAY
+  if (!front) {  // the inside: duller, without shine
+    albedo = 0.66 * mix(albedo, vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722))), 0.25);
+    gloss = 0.25;
+  }
+#endif
+#ifdef GHOST
+  float grazing = 1.0 - clamp(dot(n, v), 0.0, 1.0);
+  float alpha = mix(u_opacity, max(u_opacity, 0.80), grazing * grazing * sqrt(grazing));
+  float drawn = max(u_opacity, front ? 0.90 : 0.60);  // alpha of what is painted on the membrane
+#endif
+#ifdef FIELD
+  float place = 255.0 * clamp(v_scalar, 0.0, 1.0);
+  int entry = min(int(place), 254);
+  vec3 value = mix(texelFetch(u_map, ivec2(entry, 0), 0).rgb, texelFetch(u_map, ivec2(entry + 1, 0), 0).rgb,
+                   place - float(entry));
+  // Exactly the bar's colour, except where the membrane turns away by more than 60 degrees: there it darkens a little.
+  vec3 field_colour = value * mix(0.80, 1.0, smoothstep(0.0, 0.5, dot(n, v)));
+#endif
   LabelPoint p = label_point(v_label);
 
 #ifdef CHECKER
@@ -37,7 +77,7 @@ void main() {
   float across_theta = wave_theta / (pi / theta_step * slope(p, p.e_theta));
   float across_phi = wave_phi * p.sine / (0.5 * float(MERIDIANS) * slope(p, e_phi));
   float sign_theta = clamp(across_theta, -0.5, 0.5) * 2.0, sign_phi = clamp(across_phi, -0.5, 0.5) * 2.0;
-  albedo = mix(albedo, u_line_colour * 1.6 + 0.28 * albedo, 0.5 + 0.5 * sign_theta * sign_phi);
+  albedo = mix(albedo, line_colour * 1.6 + 0.28 * albedo, 0.5 + 0.5 * sign_theta * sign_phi);
 #endif
 
 #ifdef GRID
@@ -49,8 +89,19 @@ void main() {
   line = max(line, meridians(p, u_half_width));
   line = max(line, pole_dot(p, u_half_width));
 #endif
-  albedo = mix(albedo, u_line_colour, 0.93 * line);
+#ifdef FIELD
+  // Lines must show on both ends of a map and leave its colours in between alone.
+  float luma = dot(value, vec3(0.2126, 0.7152, 0.0722));
+  field_colour = mix(field_colour, luma > 0.36 ? 0.42 * field_colour : mix(field_colour, vec3(1.0), 0.42), 0.85 * line);
+#endif
+#ifdef CUTAWAY
+  if (!front) line *= 0.6;
+#endif
+  albedo = mix(albedo, line_colour, 0.93 * line);
   gloss *= 1.0 - 0.7 * line;
+#ifdef GHOST
+  alpha = mix(alpha, max(alpha, drawn), line);
+#endif
 #endif
 
 #ifdef MARKS
@@ -74,9 +125,14 @@ void main() {
   albedo = mix(albedo, vec3(0.95), ring);
   albedo = mix(albedo, bright > 0.5 ? u_tracer_bright : u_tracer_dark, core);
   gloss = mix(gloss, 0.45, ring);
+#ifdef GHOST
+  alpha = mix(alpha, max(alpha, drawn), ring);
+#endif
 #endif
 
-#ifdef FLAT
+#if defined(FIELD)
+  vec3 colour = field_colour;
+#elif defined(FLAT)
   vec3 colour = encode(albedo);
 #else
   vec3 colour = encode(lit(albedo, n, v, gloss));
@@ -86,7 +142,23 @@ void main() {
   // Toward a contour the cosine falls like the root of the distance, so its square over its gradient is the distance.
   float cosine = dot(n, v), square = cosine * cosine;
   float to_contour = square / max(length(vec2(dFdx(square), dFdy(square))), 1e-9);
-  colour = mix(u_contour, colour, smoothstep(0.2, 1.5, to_contour));
+#if defined(GHOST) || defined(CUTAWAY)
+  float contour = 1.0 - smoothstep(u_contour_width - 0.7, u_contour_width + 0.7, to_contour);
+#else
+  float contour = 1.0 - smoothstep(0.2, 1.5, to_contour);
 #endif
+  #ifdef GHOST
+  colour = mix(colour, u_contour + 0.08 * v_colour, contour);
+#else
+  colour = mix(colour, u_contour, contour);
+#endif
+#ifdef GHOST
+  alpha = mix(alpha, max(alpha, front ? 1.0 : drawn), contour);
+#endif
+#endif
+#ifdef GHOST
+  f_colour = vec4(colour, alpha);
+#else
   f_colour = vec4(colour, 1.0);
+#endif
 }

@@ -96,7 +96,7 @@ inline render::Frame frame_of(const sim::State& state, const render::ViewParamet
   const render::StateSummary summary = render::summarize(state);
   render::Frame frame;
   for (std::size_t v = 0; v < state.vesicles.size(); ++v)
-    frame.bodies.push_back({render::make_mesh(plan, state.vesicles[v]), render::body_colour(v)});
+    frame.bodies.push_back({render::make_mesh(plan, state.vesicles[v]), render::body_colour(v), {}});
   frame.camera = render::make_camera(render::frame_trajectory(std::span(&summary, 1), view), summary.centroid);
   frame.view = view;
   return frame;

@@ -1,0 +1,31 @@
+// What the colours of a movie mean: the range of its field over the whole trajectory, labels in the units of a paper, and
+// the colours of whole vesicles.
+#pragma once
+
+#include "settings.h"
+
+#include "render/scene.h"
+#include "sim/fields.h"
+#include "sim/trajectory.h"
+
+namespace app {
+
+/// One and the same for all frames of a movie.
+struct Painting {
+  std::vector<render::Colour> bodies;    ///< one a vesicle
+  std::optional<render::Legend> legend;  ///< of the field, or of the quantity that colours whole vesicles
+  const sim::FieldRow* field = nullptr;  ///< set when the style paints one
+  double length = 1;                     ///< R0
+  double rate = 0;                       ///< of the flow at the size of a vesicle; 0: none
+};
+
+/// Passes over `states` of the trajectory when the style paints a field whose range is not given: the range then holds
+/// all but the lowest and the highest 0.5 % of the membranes' area, widened to round numbers; a field with both signs has
+/// zero in the middle. Throws std::invalid_argument for a field that this scene does not have.
+Painting plan_painting(const sim::TrajectoryReader&, const std::vector<std::int64_t>& states, const Settings&,
+                       double area_radius);
+
+/// The field of one vesicle in the units of the legend, for make_mesh().
+sim::Coefficients painted_field(sim::Plans&, const Painting&, const Settings&, const sim::State&, std::size_t vesicle);
+
+}  // namespace app

@@ -1,0 +1,209 @@
+#include "pictures.h"
+
+#include "captions.h"
+#include "scene_text.h"
+#include "version.h"
+
+#include "render/cutaway.h"
+#include "render/sequence.h"
+#include "render/style.h"
+#include "sim/diagnostics.h"
+#include "sim/flows.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace app {
+
+sim::State state_at(const sim::TrajectoryReader& trajectory, double time) {
+  std::int64_t low = 0, high = trajectory.count() - 1;
+  while (low < high) {  // first state at or after `time`
+    const std::int64_t middle = (low + high) / 2;
+    if (trajectory.time(middle) < time) low = middle + 1;
+    else high = middle;
+  }
+  sim::State after = trajectory.state(low);
+  if (low == 0 || time >= after.time) return after;
+  return render::interpolated(trajectory.state(low - 1), after, time);
+}
+
+namespace {
+
+/// A few hundred instants are enough to frame a movie and to know the range of its field.
+std::vector<std::int64_t> instants_to_look_at(const sim::TrajectoryReader& trajectory) {
+  const std::int64_t states = trajectory.count(), stride = std::max<std::int64_t>(1, states / 400);
+  std::vector<std::int64_t> chosen;
+  for (std::int64_t k = 0; k < states; k = k + 1 < states ? std::min(k + stride, states - 1) : states) chosen.push_back(k);
+  return chosen;
+}
+
+render::FlowArrows arrows_of(const Panel& p, const render::StateSummary& summary) {
+  render::FlowArrows arrows;
+  if (!p.view.flow_arrows) return arrows;
+  arrows.points = render::arrow_points(p.framing, summary);
+  arrows.velocities = sim::background_velocity(p.source.settings.scene.flows, summary.time, arrows.points);
+  arrows.reference_speed = p.arrow_speed;
+  return arrows;
+}
+
+Panel make_panel(const PictureSource& source, const render::ViewParameters& view, const Painting& painting,
+                 const std::vector<render::StateSummary>& summaries, const render::Captions& captions) {
+  Panel p{source, view, render::frame_trajectory(summaries, view, source.settings.key_frames), 0, captions, painting, true};
+  render::check_framing(p.framing, summaries);
+  for (const render::StateSummary& summary : summaries) {
+    const render::FlowArrows arrows = arrows_of(p, summary);
+    if (arrows.velocities.rows() > 0)
+      p.arrow_speed = std::max(p.arrow_speed, arrows.velocities.rowwise().norm().maxCoeff());
+  }
+  return p;
+}
+
+render::Frame frame_of(Studio& studio, const Panel& p, const sim::State& state) {
+  render::Frame frame;
+  frame.view = p.view;
+  const render::StyleRow& style = render::find_style(frame.view.style);
+  for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
+    const sim::Coefficients& position = state.vesicles[v].position;
+    std::optional<sim::Coefficients> field;
+    if (p.painting.field) field = painted_field(studio.plans, p.painting, p.source.settings, state, v);
+    frame.bodies.push_back(
+        {render::make_mesh(studio.mesh, state.vesicles[v], field ? &*field : nullptr), p.painting.bodies[v], {}});
+    if (style.cut) frame.bodies.back().cut = render::make_cut(position, frame.view.cut_normal, frame.view.cut_offset);
+  }
+  if (frame.view.colour_bar) frame.legend = p.painting.legend;
+  else if (style.field) frame.legend = p.painting.legend;
+  const render::StateSummary summary = render::summarize(state);
+  frame.camera = render::make_camera(p.framing, summary);
+  frame.arrows = arrows_of(p, summary);
+  frame.captions = p.captions;
+  if (p.stamped) frame.captions.time = time_caption(p.source.settings.scene, state.time);
+  return frame;
+}
+
+void paste(render::Image& into, const render::Image& part, int left, int top) {
+  for (int y = 0; y < part.height; ++y)
+    std::copy_n(part.at(0, y), static_cast<std::size_t>(part.width) * 3, into.at(left, top + y));
+}
+
+/// One range for all, so that equal colours mean equal values.
+void share_legend(std::vector<Painting>& paintings) {
+  for (Painting& p : paintings)
+    if (!p.legend || !p.field || p.field != paintings.front().field) return;
+  render::Legend all = *paintings.front().legend;
+  for (const Painting& p : paintings) {
+    all.low = std::min(all.low, p.legend->low);
+    all.high = std::max(all.high, p.legend->high);
+    all.below = all.below || p.legend->below;
+    all.above = all.above || p.legend->above;
+  }
+  for (Painting& p : paintings) p.legend = all;
+}
+
+}  // namespace
+
+Production prepare_pictures(const std::vector<PictureSource>& sources) {
+  Production production;
+  std::vector<Painting> paintings;
+  std::vector<std::vector<render::StateSummary>> summaries(sources.size());
+  std::vector<render::Captions> captions;
+  const render::ViewParameters& first = sources.front().settings.view;
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const auto& [trajectory, settings] = sources[k];
+    const std::vector<std::int64_t> chosen = instants_to_look_at(trajectory);
+    for (const std::int64_t i : chosen) summaries[k].push_back(render::summarize(trajectory.state(i)));
+    sim::Plans plans;
+    const sim::VesicleMeasures measures = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
+    const double area_radius = std::sqrt(measures.area / sim::default_area);
+    paintings.push_back(plan_painting(trajectory, chosen, settings, area_radius));
+    render::Captions c;
+    c.parameters = parameter_caption(settings.scene, area_radius, measures.reduced_volume);
+    c.scale_length = area_radius;
+    if (settings.view.title || sources.size() > 1) c.title = settings.scene.title;
+    captions.push_back(c);
+    production.hash += fmt::format("{}-{}-", picture_hash(settings), trajectory.count());
+  }
+  share_legend(paintings);
+  production.hash += version();
+
+  std::vector<std::string> cameras = first.views;
+  if (cameras.empty()) cameras = {first.camera};
+  const bool grid = sources.size() > 1 && cameras.size() > 1;
+  const auto count = static_cast<int>(sources.size() * cameras.size());
+  production.width = first.size[0];
+  production.height = first.size[1];
+  production.columns = grid ? static_cast<int>(cameras.size()) : render::panel_columns(count, first.size[0], first.size[1]);
+  production.rows = (count + production.columns - 1) / production.columns;
+  const int width = production.width / production.columns, height = production.height / production.rows;
+  if (width < 16 || height < 16)
+    throw std::invalid_argument(fmt::format("{} views need a larger picture than {} x {}", count, first.size[0], first.size[1]));
+  for (std::size_t k = 0; k < sources.size(); ++k)
+    for (std::size_t c = 0; c < cameras.size(); ++c) {
+      render::ViewParameters view = sources[k].settings.view;
+      view.size = {width, height};
+      view.supersampling = first.supersampling;
+      view.camera = cameras[c];
+      const bool last = k + 1 == sources.size() && c + 1 == cameras.size();
+      view.colour_bar = view.colour_bar && last;
+      if (cameras.size() > 1) {
+        view.caption = view.caption && c == 0;
+        captions[k].panel = cameras[c];
+      }
+      production.panels.push_back(make_panel(sources[k], view, paintings[k], summaries[k], captions[k]));
+      production.panels.back().stamped = c == 0;
+    }
+  return production;
+}
+
+Studio::Studio(const render::GlChoice& choice, const std::filesystem::path& shader_dir, int picture_height)
+    : renderer(choice, shader_dir),
+      // finer where the outline would show its corners
+      mesh(picture_height > 1440 ? std::make_shared<const render::MeshPlan>(128, 256)
+                                 : std::make_shared<const render::MeshPlan>()) {}
+
+render::Image draw_picture(Studio& studio, const Production& production, double time) {
+  const std::vector<Panel>& panels = production.panels;
+  const auto draw_panel = [&](const Panel& p) {
+    return render::draw_frame(studio.renderer, frame_of(studio, p, state_at(p.source.trajectory, time)));
+  };
+  if (panels.size() == 1) return draw_panel(panels.front());
+  render::Image whole(production.width, production.height, 3);
+  std::fill(whole.pixels.begin(), whole.pixels.end(), std::uint8_t{255});
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    const auto column = static_cast<int>(k) % production.columns, row = static_cast<int>(k) / production.columns;
+    const render::Image part = draw_panel(panels[k]);
+    paste(whole, part, column * part.width, row * part.height);
+  }
+  const int width = panels.front().view.size[0], height = panels.front().view.size[1];
+  render::draw_separators(whole, production.columns, production.rows, width, height);
+  return whole;
+}
+
+std::vector<render::Image> draw_stills(const PictureSource& source, const std::vector<Still>& stills, Studio& studio) {
+  Settings plain = source.settings;
+  plain.view.projection = "orthographic";
+  plain.view.background = "white";
+  plain.view.flow_arrows = plain.view.time_stamp = plain.view.caption = plain.view.scale_bar = false;
+  plain.view.title = plain.view.triad = plain.view.flow_profile = plain.view.inset = plain.view.colour_bar = false;
+  const PictureSource changed{source.trajectory, plain};
+  const double area = sim::measure(studio.plans, source.trajectory.state(0).vesicles.front(), 1, 1).area;
+  const Painting painting =
+      plan_painting(source.trajectory, instants_to_look_at(source.trajectory), plain, std::sqrt(area / sim::default_area));
+  std::vector<render::Image> images;
+  for (const Still& still : stills) {
+    const sim::State state = state_at(source.trajectory, still.time);
+    plain.view.size = {still.width, still.height};
+    Panel p{changed, plain.view, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view, {}), 0, {},
+            painting, false};
+    const glm::dvec3 target = render::to_glm(still.target);
+    p.framing.depth += glm::length(target - p.framing.target);
+    p.framing.follows = false;
+    p.framing.target = target;
+    p.framing.half_height = still.half_height;
+    p.captions.scale_length = 0;
+    images.push_back(render::draw_frame(studio.renderer, frame_of(studio, p, state)));
+  }
+  return images;
+}
+
+}  // namespace app

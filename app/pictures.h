@@ -1,0 +1,60 @@
+// From a trajectory to single pictures: what all frames of a movie share, and the picture of one instant.
+#pragma once
+
+#include "fields.h"
+
+#include "render/draw.h"
+
+namespace app {
+
+/// The scene at any instant of a trajectory: cubic (Hermite) between saved states; before and after it the first and last.
+sim::State state_at(const sim::TrajectoryReader&, double time);
+
+/// One trajectory with its scene, whose pictures may have been changed.
+struct PictureSource {
+  const sim::TrajectoryReader& trajectory;
+  const Settings& settings;
+};
+
+/// One view of one trajectory, a part of a picture or all of it.
+struct Panel {
+  PictureSource source;
+  render::ViewParameters view;  ///< with the panel's own size and camera
+  render::Framing framing;
+  double arrow_speed = 0;
+  render::Captions captions;  ///< without the time
+  Painting painting;
+  bool stamped = true;  ///< shows the time
+};
+
+struct Production {
+  std::vector<Panel> panels;  ///< row by row
+  int columns = 1, rows = 1;
+  int width = 0, height = 0;  ///< of the whole picture
+  std::string hash;           ///< of everything that a picture depends on besides its time
+};
+
+/// Passes over each trajectory once. Several sources stand side by side, the views of one source in a row of their own; size
+/// and style of the whole are those of the first. Throws std::invalid_argument with one sentence when nothing could be seen.
+Production prepare_pictures(const std::vector<PictureSource>&);
+
+/// What draws: one for all pictures.
+struct Studio {
+  render::Renderer renderer;
+  std::shared_ptr<const render::MeshPlan> mesh;
+  sim::Plans plans;
+  Studio(const render::GlChoice&, const std::filesystem::path& shader_dir, int picture_height);
+};
+
+render::Image draw_picture(Studio&, const Production&, double time);
+
+/// One instant as a panel of a figure: orthographic, without captions, `half_height` above and below `target`.
+struct Still {
+  double time = 0;
+  sim::Vec3 target = sim::Vec3::Zero();
+  double half_height = 2;
+  int width = 600, height = 400;
+};
+std::vector<render::Image> draw_stills(const PictureSource&, const std::vector<Still>&, Studio&);
+
+}  // namespace app

@@ -1,0 +1,11 @@
+// What the style "cutaway" takes away of a vesicle, and the rim that is left.
+#pragma once
+
+#include "scene.h"
+
+namespace render {
+
+/// The plane has the given normal, of any length but 0, and lies `offset` from the vesicle's centre of mass along it.
+Cut make_cut(const sim::Coefficients& position, const sim::Vec3& normal, double offset);
+
+}  // namespace render

@@ -1,0 +1,23 @@
+#include "palette.h"
+
+#include "sim/catalogue.h"
+
+#include <charconv>
+#include <stdexcept>
+#include <string>
+
+namespace render {
+
+Colour parse_colour(std::string_view text) {
+  for (const ColourRow& row : body_colours())
+    if (row.name == text) return row.colour;
+  unsigned code = 0;
+  if (text.size() == 7 && text[0] == '#')
+    if (const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, code, 16);
+        error == std::errc() && end == text.data() + 7)
+      return {(code >> 16) / 255.0, (code >> 8 & 255) / 255.0, (code & 255) / 255.0};
+  throw std::invalid_argument("'" + std::string(text) + "' is no known colour" +
+                              sim::suggestion(text, sim::row_names(body_colours())) + ", and not #rrggbb");
+}
+
+}  // namespace render

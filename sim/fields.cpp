@@ -1,0 +1,138 @@
+#include "fields.h"
+
+#include "forces.h"
+
+#include <cmath>
+#include <limits>
+
+namespace sim {
+
+namespace {
+
+Vector row_dot(const Matrix& a, const Matrix& b) { return a.cwiseProduct(b).rowwise().sum(); }
+
+/// Of the membrane relative to its vesicle, which moves with the mean velocity of its membrane.
+Matrix relative_velocity(const FieldSite& s) {
+  Matrix u = s.basis.synthesize(s.state.vesicles[s.vesicle].velocity).values;
+  const Vec3 mean = u.transpose() * s.geometry.dA / s.geometry.dA.sum();
+  u.rowwise() -= mean.transpose();
+  return u;
+}
+
+Vector tension(const FieldSite& s) { return s.basis.synthesize(s.state.vesicles[s.vesicle].tension).values.col(0); }
+Vector mean_curvature(const FieldSite& s) { return -s.geometry.H; }
+Vector gaussian_curvature(const FieldSite& s) { return s.geometry.K; }
+
+Vector bending(const FieldSite& s) {
+  const ForceBases bases{s.basis, s.full};
+  return row_dot(bending_force(bases, s.geometry, s.bending_modulus, s.state.vesicles[s.vesicle].position), s.geometry.n);
+}
+
+Vector tension_density(const FieldSite& s) {
+  const ForceBases bases{s.basis, s.full};
+  return tension_force(bases, s.geometry, s.state.vesicles[s.vesicle].tension).rowwise().norm();
+}
+
+Vector normal_velocity(const FieldSite& s) { return row_dot(relative_velocity(s), s.geometry.n); }
+
+Vector membrane_speed(const FieldSite& s) {
+  const Matrix u = relative_velocity(s);
+  const Vector across = row_dot(u, s.geometry.n);
+  return (u - (s.geometry.n.array().colwise() * across.array()).matrix()).rowwise().norm();
+}
+
+/// A neighbour as a net of points, dense enough to find the nearest part of it.
+struct Net {
+  Matrix points, normals, parameters;
+  Vec3 centre;
+  double reach;  ///< of its points from the centre
+};
+
+Net net_of(const Coefficients& position) {
+  constexpr Eigen::Index latitudes = 40, longitudes = 80;
+  const double step = std::numbers::pi / latitudes;
+  const Vector theta = Vector::LinSpaced(latitudes, step / 2, std::numbers::pi - step / 2);
+  const Vector phi = Vector::LinSpaced(longitudes + 1, 0, 2 * std::numbers::pi).head(longitudes);
+  const FirstDerivatives x = sample_grid(position, theta, phi);
+  Net net;
+  net.points = x.value;
+  net.normals.resize(x.value.rows(), 3);
+  net.parameters.resize(x.value.rows(), 3);
+  for (Eigen::Index k = 0; k < x.value.rows(); ++k) {
+    const Vec3 t = x.t.row(k), f = x.f.row(k);
+    net.normals.row(k) = t.cross(f).normalized().transpose();
+    const double a = theta[k % latitudes], b = phi[k / latitudes];
+    net.parameters.row(k) << std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a);
+  }
+  net.centre = net.points.colwise().mean().transpose();
+  net.reach = (net.points.rowwise() - net.centre.transpose()).rowwise().norm().maxCoeff();
+  return net;
+}
+
+Vector neighbour_distance(const FieldSite& s) {
+  std::vector<Net> nets;
+  for (const VesicleState& v : s.state.vesicles) nets.push_back(net_of(v.position));
+  const double near = 0.3 * nets[s.vesicle].reach;  // below it the exact nearest point, above it the tangent plane will do
+  const Matrix& x = s.geometry.x.value;
+  Vector distance(x.rows());
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const Vec3 here = x.row(i);
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < nets.size(); ++k) {
+      const Net& net = nets[k];
+      if (k == s.vesicle || (here - net.centre).norm() - net.reach >= best) continue;
+      Eigen::Index nearest = 0;
+      const double rough = std::sqrt((net.points.rowwise() - here.transpose()).rowwise().squaredNorm().minCoeff(&nearest));
+      const double planar = std::abs(net.normals.row(nearest).dot(here.transpose() - net.points.row(nearest)));
+      best = std::min(best, rough > near ? planar
+                                         : nearest_point(s.state.vesicles[k].position, here,
+                                                         Vec3(net.parameters.row(nearest)))
+                                               .distance);
+    }
+    distance[i] = best;
+  }
+  return distance;
+}
+
+}  // namespace
+
+const std::vector<FieldRow>& field_catalogue() {
+  static const std::vector<FieldRow> rows{
+      {"tension", "membrane tension", "σ", FieldScale::tension, true, false, tension},
+      {"mean-curvature", "mean curvature, 1 on the sphere of the same area", "H", FieldScale::curvature, true, false,
+       mean_curvature},
+      {"gaussian-curvature", "Gaussian curvature, 1 on the sphere of the same area, negative on saddles", "K",
+       FieldScale::square_curvature, true, false, gaussian_curvature},
+      {"bending-force", "bending force of the membrane on the fluid per area, along the outward normal",
+       "f_{b}·n", FieldScale::force, true, false, bending},
+      {"tension-force", "magnitude of the tension force of the membrane on the fluid per area",
+       "|f_{σ}|", FieldScale::force, false, false, tension_density},
+      {"normal-velocity", "velocity along the outward normal, relative to the vesicle: how fast the shape changes or turns",
+       "u·n", FieldScale::velocity, true, false, normal_velocity},
+      {"membrane-speed", "speed along the membrane, relative to the vesicle: tank-treading", "|u_{s}|",
+       FieldScale::velocity, false, false, membrane_speed},
+      {"neighbour-distance", "distance to the nearest point of any other vesicle", "h", FieldScale::length, false, true,
+       neighbour_distance},
+  };
+  return rows;
+}
+
+const FieldRow& find_field(std::string_view name) {
+  if (const FieldRow* row = find_row(field_catalogue(), name)) return *row;
+  throw std::invalid_argument("unknown field '" + std::string(name) + "'" +
+                              suggestion(name, row_names(field_catalogue())));
+}
+
+Coefficients membrane_field(Plans& plans, const FieldRow& field, const State& state, std::size_t vesicle,
+                            double bending_modulus) {
+  if (field.needs_neighbours && state.vesicles.size() < 2)
+    throw std::invalid_argument("the field '" + std::string(field.name) + "' needs two vesicles or more");
+  const VesicleState& v = state.vesicles.at(vesicle);
+  const int p = v.position.order;
+  const int q = std::clamp(3 * p, 24, std::max(96, p));  // nonlinear in the surface: three times its degree
+  const Basis &basis = plans.basis(p, q), &full = plans.basis(q, q);
+  const FieldSite site{basis, full, geometry(basis, v.position), state, vesicle, bending_modulus};
+  return full.analyze(Matrix(field.function(site)));
+}
+
+}  // namespace sim

@@ -1,0 +1,54 @@
+// Scalars on a membrane that pictures show: tension, curvatures, force densities, velocities, distance to the neighbours.
+// All are functions of one saved state and come as coefficients of a degree above that of the surface, in the units of
+// the scene; whoever draws them divides by the scales he wants.
+#pragma once
+
+#include "geometry.h"
+#include "near.h"
+#include "plans.h"
+
+#include "catalogue.h"
+#include "parameters.h"
+
+namespace sim {
+
+/// One vesicle at one instant, on the grid on which its fields are sampled.
+struct FieldSite {
+  const Basis& basis;       ///< the surface's degree on the grid
+  const Basis& full;        ///< the grid's own degree
+  Geometry geometry;
+  const State& state;
+  std::size_t vesicle;      ///< within state
+  double bending_modulus;
+};
+
+/// What a field is divided by to become a pure number.
+enum class FieldScale {
+  length,           ///< R0
+  curvature,        ///< 1/R0
+  square_curvature, ///< 1/R0^2
+  tension,          ///< kappa_b/R0^2
+  force,            ///< kappa_b/R0^3
+  velocity          ///< R0 times the rate of the flow; 1 where it has none
+};
+
+/// Value at every grid point.
+using FieldFunction = Vector (*)(const FieldSite&);
+
+struct FieldRow {
+  std::string_view name, meaning;
+  std::string_view symbol;  ///< with _{...} and ^{...} for lowered and raised
+  FieldScale scale;
+  bool has_sign;            ///< zero is a value that the eye must find
+  bool needs_neighbours;    ///< there must be two vesicles
+  FieldFunction function;
+};
+const std::vector<FieldRow>& field_catalogue();
+/// Throws std::invalid_argument that names the nearest known field.
+const FieldRow& find_field(std::string_view name);
+
+/// The field of one vesicle, one column. Throws std::invalid_argument when it needs neighbours and there are none, and
+/// std::domain_error when the surface is not regular.
+Coefficients membrane_field(Plans&, const FieldRow&, const State&, std::size_t vesicle, double bending_modulus);
+
+}  // namespace sim
