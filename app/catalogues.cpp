@@ -1,5 +1,7 @@
 #include "catalogues.h"
 
+#include "movie_formats.h"
+
 #include "render/camera.h"
 #include "render/colormap.h"
 #include "render/figure.h"
@@ -37,6 +39,7 @@ const std::vector<Catalogue>& catalogues() {
       {"fields", "scalars on a membrane, for the style field", words(sim::field_catalogue())},
       {"colour_maps", "colours of a field", words(render::colour_maps())},
       {"colours", "colours of vesicles, in the order in which they are given out", words(render::body_colours())},
+      {"formats", "movie files", words(movie_formats())},
       {"figures", "figures drawn from a trajectory", words(render::figures())}};
   return all;
 }

@@ -96,6 +96,16 @@ constexpr OptionRow option_rows[] = {
                                             "short for --set view.size=[W, H]")
            ->type_name("WxH");
      }},
+    {"format",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<std::string>("--format", [&o](const std::string& s) { o.set.push_back("movie.format=" + s); },
+                                            "short for --set movie.format=NAME")
+           ->type_name("NAME");
+     }},
+    {"time",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--time", o.time, "one still of this time instead of a movie; -o names the PNG file");
+     }},
     {"csv",
      [](CLI::App& app, Options& o) {
        app.add_option("--csv", o.csv, "write comma-separated values; - is standard output")->required();

@@ -3,8 +3,10 @@
 #include "figures.h"
 #include "frames.h"
 #include "interrupt.h"
+#include "movie_formats.h"
 #include "scene_file.h"
 #include "scene_text.h"
+#include "workers.h"
 
 #include <fmt/format.h>
 
@@ -31,18 +33,39 @@ Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path,
 }  // namespace
 
 int render(const Options& options) {
+  std::vector<sim::TrajectoryReader> trajectories;
+  std::vector<Settings> settings;
+  for (const fs::path& path : options.inputs) {
+    trajectories.emplace_back(path);
+    settings.push_back(scene_of(trajectories.back(), path, options.set));
+  }
+  std::vector<PictureSource> sources;
+  for (std::size_t k = 0; k < trajectories.size(); ++k) sources.push_back({trajectories[k], settings[k]});
   const fs::path& path = options.inputs.front();
-  const sim::TrajectoryReader trajectory(path);
-  const Settings settings = scene_of(trajectory, path, options.set);
-  const fs::path folder = !options.output.empty() ? options.output : path.has_parent_path() ? path.parent_path() : ".";
-  const FrameReport report = render_frames(trajectory, settings, folder, options, true);
-  if (report.interrupted) {
+  const fs::path here = path.has_parent_path() ? path.parent_path() : ".";
+
+  if (options.time) {
+    fs::path still = options.output.empty() ? here / "still.png" : options.output;
+    if (fs::is_directory(still)) still /= "still.png";
+    render_still(sources, *options.time, still, options);
+    if (!options.quiet) fmt::print("{}\n", still.string());
+    return 0;
+  }
+  const fs::path folder = options.output.empty() ? here : options.output;
+  const auto stopped = [] {
     fmt::print(stderr, "tanktread: interrupted; the same command continues\n");
     return interrupted_status;
+  };
+  if (options.jobs > 1 && options.shards == 1) {
+    check_movie(find_movie_format(settings.front().movie.format), settings.front().view.size[0], settings.front().view.size[1]);
+    if (!draw_in_processes(options, folder)) return stopped();
   }
+  const FrameReport report = render_frames(sources, folder, options, true);
+  if (report.interrupted) return stopped();
   if (!options.quiet) {
     fmt::print("{}: {} frames drawn, {} kept\n", (folder / "frames").string(), report.drawn, report.kept);
-    if (report.movie) fmt::print("{}\n", (folder / "movie.mp4").string());
+    for (const fs::path& file : {report.movie, report.poster})
+      if (!file.empty()) fmt::print("{}\n", file.string());
   }
   if (!report.remark.empty()) fmt::print(stderr, "tanktread: {}\n", report.remark);
   return report.movie_failed ? 1 : 0;

@@ -3,6 +3,7 @@
 #include "figures.h"
 #include "frames.h"
 #include "interrupt.h"
+#include "movie_formats.h"
 #include "output.h"
 #include "scene_file.h"
 #include "scene_text.h"
@@ -72,6 +73,7 @@ int run(const Options& options) {
   }
   // Before hours of simulation: can there be pictures at all?
   render::GlContext(render::parse_gl_choice(options.gl));
+  check_movie(find_movie_format(settings.movie.format), settings.view.size[0], settings.view.size[1]);
   const FolderState state = claim_folder(folder, settings, options.force);
   const fs::path trajectory = folder / "trajectory.h5";
   SimulationReport report;
@@ -87,14 +89,15 @@ int run(const Options& options) {
 
   // A simulation that stopped early is drawn as far as it went: that is where one looks for the reason.
   const sim::TrajectoryReader reader(trajectory);
-  const FrameReport frames = render_frames(reader, settings, folder, options, state != FolderState::same);
+  const FrameReport frames = render_frames({{reader, settings}}, folder, options, state != FolderState::same);
   if (frames.interrupted) {
     fmt::print(stderr, "tanktread: interrupted; {} frames are in '{}'; the same command continues\n",
                frames.drawn + frames.kept, (folder / "frames").string());
     return interrupted_status;
   }
   say(options, fmt::format("{}: {} frames drawn, {} kept", (folder / "frames").string(), frames.drawn, frames.kept));
-  if (frames.movie) say(options, (folder / "movie.mp4").string());
+  if (!frames.movie.empty()) say(options, frames.movie.string());
+  if (!frames.poster.empty()) say(options, frames.poster.string());
   if (!frames.remark.empty())
     fmt::print(stderr, "tanktread: {}; the frames are in '{}'\n", frames.remark, (folder / "frames").string());
   for (const render::FigureParameters& figure : settings.figures) {

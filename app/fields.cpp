@@ -90,7 +90,7 @@ void give_range(render::Legend& legend, const render::ViewParameters& view, std:
     low = view.field_range[0];
     high = view.field_range[1];
   }
-  const bool both = has_sign && low < 0 && high > 0 && std::min(-low, high) > 0.05 * std::max(-low, high);
+  const bool both = has_sign && low < 0 && high > 0 && std::min(-low, high) > 0.3 * std::max(-low, high);
   const render::ColourMapRow& map = map_for(view, both);
   if (view.field_range.empty()) {
     if (map.kind == render::MapKind::diverging) {

@@ -19,16 +19,16 @@ namespace app {
 namespace {
 
 /// One thread and no dates: the same frames give the same file.
-std::vector<std::string> arguments(const std::filesystem::path& draft, int width, int height, double frame_rate) {
-  return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-          "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", fmt::format("{}x{}", width, height),
-          "-framerate", fmt::format("{}", frame_rate), "-i", "pipe:0", "-an",
-          // Players expect even sizes, 4:2:0 and the colour matrix of HD.
-          "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
-          "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709",
-          "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-threads", "1",
-          "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1", "-movflags", "+faststart",
-          "-f", "mp4", draft.string()};
+std::vector<std::string> arguments(const MovieFormat& format, const std::filesystem::path& draft, int width, int height,
+                                   double frame_rate) {
+  std::vector<std::string> words{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+                                 "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", fmt::format("{}x{}", width, height),
+                                 "-framerate", fmt::format("{}", frame_rate), "-i", "pipe:0", "-an"};
+  words.insert(words.end(), format.encoder.begin(), format.encoder.end());
+  if (frame_rate > format.fastest) words.insert(words.end(), {"-r", fmt::format("{}", format.fastest)});
+  words.insert(words.end(), {"-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1", "-f",
+                             std::string(format.muxer), draft.string()});
+  return words;
 }
 
 int wait_for(pid_t child) {
@@ -39,11 +39,12 @@ int wait_for(pid_t child) {
 
 }  // namespace
 
-MovieEncoder::MovieEncoder(const std::filesystem::path& path, int width, int height, double frame_rate)
+MovieEncoder::MovieEncoder(const MovieFormat& format, const std::filesystem::path& path, int width, int height,
+                           double frame_rate)
     : path_(path), draft_(path.string() + ".tmp"), width_(width), height_(height) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
-  std::vector<std::string> words = arguments(std::filesystem::absolute(draft_), width, height, frame_rate);
+  std::vector<std::string> words = arguments(format, std::filesystem::absolute(draft_), width, height, frame_rate);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);

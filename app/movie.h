@@ -1,6 +1,8 @@
 // A movie: frames go as raw samples through a pipe into an ffmpeg child process, which writes the file.
 #pragma once
 
+#include "movie_formats.h"
+
 #include "render/image.h"
 
 #include <filesystem>
@@ -13,7 +15,7 @@ namespace app {
 class MovieEncoder {
  public:
   /// Starts ffmpeg for `path` (written beside it, renamed by finish()). Throws FfmpegMissing when there is none.
-  MovieEncoder(const std::filesystem::path& path, int width, int height, double frame_rate);
+  MovieEncoder(const MovieFormat&, const std::filesystem::path& path, int width, int height, double frame_rate);
   MovieEncoder(const MovieEncoder&) = delete;
   MovieEncoder& operator=(const MovieEncoder&) = delete;
   /// Without finish(): ffmpeg is stopped and nothing is left.

@@ -15,6 +15,7 @@ struct Options {
   std::vector<std::filesystem::path> inputs;   ///< scene, trajectories, or a file to look at
   std::filesystem::path output;                ///< -o
   std::vector<std::string> set;                ///< --set, in order
+  std::optional<double> time;                  ///< --time: a still
   std::optional<std::int64_t> steps;           ///< --steps
   int jobs = 0;                                ///< -j; 0: as the scene says
   std::string gl = "auto";

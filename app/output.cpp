@@ -95,7 +95,8 @@ FolderState claim_folder(const fs::path& folder, const Settings& settings, bool 
   if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
   // Only what an earlier run of ours left there: its scene.toml says so.
   if (state == FolderState::fresh && fs::exists(folder / "scene.toml")) {
-    for (const char* old : {"trajectory.h5", "movie.mp4", "scene.toml"}) fs::remove(folder / old, error);
+    for (const char* old :
+         {"trajectory.h5", "movie.mp4", "movie.mkv", "movie.gif", "movie.webp", "poster.png", "scene.toml"}) fs::remove(folder / old, error);
     remove_frames(folder / "frames", 0);
   }
   if (state != FolderState::same) write_whole_file(folder / "scene.toml", write_scene(settings));

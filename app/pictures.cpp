@@ -4,7 +4,9 @@
 #include "scene_text.h"
 #include "version.h"
 
+#include "render/annotation.h"
 #include "render/cutaway.h"
+#include "render/section.h"
 #include "render/sequence.h"
 #include "render/style.h"
 #include "sim/diagnostics.h"
@@ -38,18 +40,53 @@ std::vector<std::int64_t> instants_to_look_at(const sim::TrajectoryReader& traje
   return chosen;
 }
 
-render::FlowArrows arrows_of(const Panel& p, const render::StateSummary& summary) {
+render::FlowArrows arrows_of(const ViewPanel& p, const render::StateSummary& summary) {
   render::FlowArrows arrows;
   if (!p.view.flow_arrows) return arrows;
-  arrows.points = render::arrow_points(p.framing, summary);
+  arrows.points = render::arrow_points(p.framing, p.framing.moment(summary));
   arrows.velocities = sim::background_velocity(p.source.settings.scene.flows, summary.time, arrows.points);
   arrows.reference_speed = p.arrow_speed;
   return arrows;
 }
 
-Panel make_panel(const PictureSource& source, const render::ViewParameters& view, const Painting& painting,
+/// The velocity to the right of the picture along the vertical line through its middle.
+render::FlowProfile profile_of(const ViewPanel& p, const render::Camera& camera, double time) {
+  constexpr int count = 25;
+  constexpr double reach = 0.62;  // of the picture's half height
+  const glm::dmat3 turn(glm::transpose(glm::mat3(camera.view)));  // columns: right, up, back
+  sim::Matrix points(count, 3);
+  std::vector<double> heights;
+  for (int k = 0; k < count; ++k) {
+    heights.push_back(reach * (2.0 * k / (count - 1) - 1));
+    points.row(k) = render::to_sim(camera.target + heights.back() * camera.half_height * turn[1]).transpose();
+  }
+  const sim::Matrix velocity = sim::background_velocity(p.source.settings.scene.flows, time, points);
+  render::FlowProfile profile;
+  for (int k = 0; k < count; ++k)
+    profile.points.emplace_back(heights[static_cast<std::size_t>(k)], glm::dot(render::to_glm(velocity.row(k)), turn[0]));
+  return profile;
+}
+
+/// All vesicles cut by the plane y = that of what the camera follows or aims at.
+render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render::Camera& camera) {
+  render::Inset inset;
+  render::CutPlane plane;
+  plane.origin = sim::Vec3(0, render::summarize(state).centroid.y, 0);
+  constexpr double largest = 0.85;  // of the box's half height in that of the picture
+  inset.centre = {camera.target.x, camera.target.z};
+  inset.half_height = camera.half_height * largest;
+  for (std::size_t v = 0; v < state.vesicles.size(); ++v)
+    for (const render::ClosedCurve& curve : render::cut(state.vesicles[v].position, plane)) {
+      render::Inset::Curve& drawn = inset.curves.emplace_back();
+      drawn.colour = p.painting.bodies[v];
+      for (Eigen::Index k = 0; k < curve.points.rows(); ++k) drawn.points.emplace_back(curve.points(k, 0), curve.points(k, 1));
+    }
+  return inset;
+}
+
+ViewPanel make_panel(const PictureSource& source, const render::ViewParameters& view, const Painting& painting,
                  const std::vector<render::StateSummary>& summaries, const render::Captions& captions) {
-  Panel p{source, view, render::frame_trajectory(summaries, view, source.settings.key_frames), 0, captions, painting, true};
+  ViewPanel p{source, view, render::frame_trajectory(summaries, view, source.settings.key_frames), 0, captions, painting, true};
   render::check_framing(p.framing, summaries);
   for (const render::StateSummary& summary : summaries) {
     const render::FlowArrows arrows = arrows_of(p, summary);
@@ -59,7 +96,7 @@ Panel make_panel(const PictureSource& source, const render::ViewParameters& view
   return p;
 }
 
-render::Frame frame_of(Studio& studio, const Panel& p, const sim::State& state) {
+render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& state) {
   render::Frame frame;
   frame.view = p.view;
   const render::StyleRow& style = render::find_style(frame.view.style);
@@ -71,11 +108,12 @@ render::Frame frame_of(Studio& studio, const Panel& p, const sim::State& state) 
         {render::make_mesh(studio.mesh, state.vesicles[v], field ? &*field : nullptr), p.painting.bodies[v], {}});
     if (style.cut) frame.bodies.back().cut = render::make_cut(position, frame.view.cut_normal, frame.view.cut_offset);
   }
-  if (frame.view.colour_bar) frame.legend = p.painting.legend;
-  else if (style.field) frame.legend = p.painting.legend;
+  frame.legend = p.painting.legend;
   const render::StateSummary summary = render::summarize(state);
-  frame.camera = render::make_camera(p.framing, summary);
+  frame.camera = render::make_camera(p.framing, p.framing.moment(summary));
   frame.arrows = arrows_of(p, summary);
+  if (frame.view.flow_profile) frame.profile = profile_of(p, frame.camera, state.time);
+  if (frame.view.inset) frame.inset = inset_of(p, state, frame.camera);
   frame.captions = p.captions;
   if (p.stamped) frame.captions.time = time_caption(p.source.settings.scene, state.time);
   return frame;
@@ -162,8 +200,8 @@ Studio::Studio(const render::GlChoice& choice, const std::filesystem::path& shad
                                  : std::make_shared<const render::MeshPlan>()) {}
 
 render::Image draw_picture(Studio& studio, const Production& production, double time) {
-  const std::vector<Panel>& panels = production.panels;
-  const auto draw_panel = [&](const Panel& p) {
+  const std::vector<ViewPanel>& panels = production.panels;
+  const auto draw_panel = [&](const ViewPanel& p) {
     return render::draw_frame(studio.renderer, frame_of(studio, p, state_at(p.source.trajectory, time)));
   };
   if (panels.size() == 1) return draw_panel(panels.front());
@@ -179,28 +217,30 @@ render::Image draw_picture(Studio& studio, const Production& production, double 
   return whole;
 }
 
-std::vector<render::Image> draw_stills(const PictureSource& source, const std::vector<Still>& stills, Studio& studio) {
-  Settings plain = source.settings;
+std::vector<render::Image> draw_stills(const sim::TrajectoryReader& trajectory, const Settings& settings,
+                                       const std::vector<Still>& stills, const Options& options) {
+  Settings plain = settings;
   plain.view.projection = "orthographic";
   plain.view.background = "white";
   plain.view.flow_arrows = plain.view.time_stamp = plain.view.caption = plain.view.scale_bar = false;
   plain.view.title = plain.view.triad = plain.view.flow_profile = plain.view.inset = plain.view.colour_bar = false;
-  const PictureSource changed{source.trajectory, plain};
-  const double area = sim::measure(studio.plans, source.trajectory.state(0).vesicles.front(), 1, 1).area;
+  plain.view.eye.reset();
+  plain.view.target.reset();
+  Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, 1080);
+  const double area = sim::measure(studio.plans, trajectory.state(0).vesicles.front(), 1, 1).area;
   const Painting painting =
-      plan_painting(source.trajectory, instants_to_look_at(source.trajectory), plain, std::sqrt(area / sim::default_area));
+      plan_painting(trajectory, instants_to_look_at(trajectory), plain, std::sqrt(area / sim::default_area));
   std::vector<render::Image> images;
   for (const Still& still : stills) {
-    const sim::State state = state_at(source.trajectory, still.time);
+    const sim::State state = state_at(trajectory, still.time);
     plain.view.size = {still.width, still.height};
-    Panel p{changed, plain.view, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view, {}), 0, {},
+    ViewPanel p{{trajectory, plain}, plain.view, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view), 0, {},
             painting, false};
     const glm::dvec3 target = render::to_glm(still.target);
     p.framing.depth += glm::length(target - p.framing.target);
     p.framing.follows = false;
     p.framing.target = target;
     p.framing.half_height = still.half_height;
-    p.captions.scale_length = 0;
     images.push_back(render::draw_frame(studio.renderer, frame_of(studio, p, state)));
   }
   return images;

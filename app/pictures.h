@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fields.h"
+#include "options.h"
 
 #include "render/draw.h"
 
@@ -17,7 +18,7 @@ struct PictureSource {
 };
 
 /// One view of one trajectory, a part of a picture or all of it.
-struct Panel {
+struct ViewPanel {
   PictureSource source;
   render::ViewParameters view;  ///< with the panel's own size and camera
   render::Framing framing;
@@ -28,7 +29,7 @@ struct Panel {
 };
 
 struct Production {
-  std::vector<Panel> panels;  ///< row by row
+  std::vector<ViewPanel> panels;  ///< row by row
   int columns = 1, rows = 1;
   int width = 0, height = 0;  ///< of the whole picture
   std::string hash;           ///< of everything that a picture depends on besides its time
@@ -55,6 +56,7 @@ struct Still {
   double half_height = 2;
   int width = 600, height = 400;
 };
-std::vector<render::Image> draw_stills(const PictureSource&, const std::vector<Still>&, Studio&);
+std::vector<render::Image> draw_stills(const sim::TrajectoryReader&, const Settings&, const std::vector<Still>&,
+                                       const Options&);
 
 }  // namespace app

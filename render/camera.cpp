@@ -2,8 +2,10 @@
 
 #include "sim/basis.h"
 
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -47,6 +49,7 @@ const std::vector<CameraRow>& cameras() {
       {"three-quarter", "flow-gradient, from a little to the left and above", turned(-22, 16)},
       {"flow-vorticity", "from above: the flow to the right, vorticity up the picture", axes_from({0, 0, 1}, {0, 1, 0})},
       {"gradient-vorticity", "against the flow: its gradient up", axes_from({1, 0, 0}, {0, 0, 1})},
+      {"along-flow", "with the flow, from behind: its gradient up", axes_from({-1, 0, 0}, {0, 0, 1})},
   };
   return rows;
 }
@@ -63,42 +66,130 @@ StateSummary summarize(const sim::State& state) {
   const sim::Vector theta = sim::Vector::LinSpaced(latitudes, step / 2, std::numbers::pi - step / 2);
   const sim::Vector phi = sim::Vector::LinSpaced(longitudes + 1, 0, 2 * std::numbers::pi).head(longitudes);
   StateSummary summary;
+  summary.time = state.time;
   const Eigen::Index each = latitudes * longitudes;
   summary.points.reserve(static_cast<std::size_t>(each) * state.vesicles.size());
   double area = 0;
   for (const sim::VesicleState& vesicle : state.vesicles) {
     const sim::FirstDerivatives x = sim::sample_grid(vesicle.position, theta, phi);
+    dvec3 sum(0);
+    double own = 0;
     for (Eigen::Index i = 0; i < each; ++i) {
-      const dvec3 p = to_glm(x.value.row(i));
-      const double weight = glm::length(glm::cross(to_glm(x.t.row(i)), to_glm(x.f.row(i))));
-      summary.centroid += weight * p;
-      area += weight;
+      const dvec3 p = to_glm(x.value.row(i)), normal = glm::cross(to_glm(x.t.row(i)), to_glm(x.f.row(i)));
+      const double weight = glm::length(normal);
+      sum += weight * p;
+      own += weight;
       summary.points.emplace_back(p);
+      summary.areas.emplace_back(step * step * normal);
     }
+    summary.centroid += sum;
+    area += own;
+    summary.centroids.push_back(own > 0 ? sum / own : sum);
   }
   if (area > 0) summary.centroid /= area;
   return summary;
 }
 
-Framing frame_trajectory(std::span<const StateSummary> states, const ViewParameters& view) {
+CameraKey camera_at(std::span<const CameraKey> keys, double time) {
+  if (keys.empty()) return {};
+  if (time <= keys.front().time) return keys.front();
+  if (time >= keys.back().time) return keys.back();
+  std::size_t k = 0;
+  while (keys[k + 1].time <= time) ++k;
+  const CameraKey &from = keys[k], &to = keys[k + 1];
+  const double h = to.time - from.time, u = (time - from.time) / h, rest = 1 - u;
+  // Tangents by Fritsch and Butland's harmonic mean: no overshoot; none at the ends and where the motion turns back.
+  const auto value = [&](double CameraKey::*member) {
+    const auto secant = [&](std::size_t i) { return (keys[i + 1].*member - keys[i].*member) / (keys[i + 1].time - keys[i].time); };
+    const auto tangent = [&](std::size_t i) {
+      if (i == 0 || i + 1 == keys.size()) return 0.0;
+      const double before = secant(i - 1), after = secant(i);
+      return before * after > 0 ? 2 * before * after / (before + after) : 0.0;
+    };
+    return rest * rest * (1 + 2 * u) * from.*member + u * u * (3 - 2 * u) * to.*member +
+           h * u * rest * (rest * tangent(k) - u * tangent(k + 1));
+  };
+  return {time, value(&CameraKey::azimuth), value(&CameraKey::elevation), value(&CameraKey::zoom)};
+}
+
+ViewAxes Framing::axes_at(double time) const {
+  ViewAxes result = axes;
+  if (!keys.empty()) {
+    const CameraKey key = camera_at(keys, time);
+    result = turned(key.azimuth, key.elevation);
+  }
+  if (orbit != 0) {
+    const double c = std::cos(orbit * time), s = std::sin(orbit * time);
+    for (dvec3* v : {&result.right, &result.up, &result.back}) *v = {c * v->x - s * v->y, s * v->x + c * v->y, v->z};
+  }
+  return result;
+}
+
+Moment Framing::moment(const StateSummary& state) const {
+  return {vesicle < 0 ? state.centroid : state.centroids.at(static_cast<std::size_t>(vesicle)), state.time};
+}
+
+namespace {
+
+constexpr double neighbourhood = 1.7;  // times the vesicle that is followed: room for what happens beside it
+
+// The eye and its target as the scene gives them.
+void place_eye(Framing& framing, const ViewParameters& view) {
+  const dvec3 eye = to_glm(*view.eye);
+  const double distance = glm::distance(eye, framing.target);
+  if (!(distance > 0)) throw std::invalid_argument("view.eye and view.target are the same point");
+  const dvec3 back = (eye - framing.target) / distance, up = to_glm(view.up);
+  if (glm::length(glm::cross(up, back)) <= 1e-6 * glm::length(up))
+    throw std::invalid_argument("view.up must not point along the line of sight");
+  framing.axes = axes_from(back, up);
+  framing.distance = distance;
+  framing.half_height = distance * tangent_of_half_angle / view.zoom;
+  framing.placed = true;
+}
+
+}  // namespace
+
+Framing frame_trajectory(std::span<const StateSummary> states, const ViewParameters& view,
+                         std::span<const KeyFrameParameters> key_frames) {
   StateSummary sphere;
   sphere.points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  sphere.centroids = {dvec3(0)};
   if (states.empty()) states = {&sphere, 1};
 
   Framing framing;
   framing.axes = find_camera(view.camera).axes;
   framing.perspective = view.projection != "orthographic";
   framing.aspect = static_cast<double>(view.size.at(0)) / view.size.at(1);
-  const glm::dmat3 from_axes(framing.axes.right, framing.axes.up, framing.axes.back);
+  framing.orbit = view.eye ? 0 : glm::radians(view.orbit);
+  if (!view.eye)
+    for (const KeyFrameParameters& k : key_frames) framing.keys.push_back({k.time, k.azimuth, k.elevation, k.zoom});
+  std::stable_sort(framing.keys.begin(), framing.keys.end(),
+                   [](const CameraKey& a, const CameraKey& b) { return a.time < b.time; });
+  const std::size_t vesicles = states[0].centroids.size();
+  if (view.follow == "vesicle") {
+    framing.vesicle = view.follow_vesicle;
+    if (static_cast<std::size_t>(view.follow_vesicle) >= vesicles)
+      throw std::invalid_argument("view.follow_vesicle is " + std::to_string(view.follow_vesicle) +
+                                  ", but the vesicles are numbered from 0 to " + std::to_string(vesicles - 1));
+  }
+  // Boxes along the axes of the picture; of the scene when the camera turns.
+  const glm::dmat3 from_axes = framing.turns() ? glm::dmat3(1) : glm::dmat3(framing.axes.right, framing.axes.up, framing.axes.back);
   const glm::dmat3 to_axes = glm::transpose(from_axes);
+  // What the picture must hold: all points, or those of the vesicle that is followed.
+  const auto shown = [&](const StateSummary& state) {
+    std::span<const glm::vec3> points = state.points;
+    if (framing.vesicle < 0) return points;
+    const std::size_t each = points.size() / vesicles;
+    return points.subspan(each * static_cast<std::size_t>(framing.vesicle), each);
+  };
 
   Extent centroids, about_centroid;
   double largest = 0;  // extent of one instant
   for (const StateSummary& state : states) {
-    const dvec3 centroid = to_axes * state.centroid;
+    const dvec3 centroid = to_axes * framing.moment(state).centre;
     centroids.add(centroid);
     Extent now;
-    for (const dvec3 point : state.points) {
+    for (const dvec3 point : shown(state)) {
       const dvec3 p = to_axes * point;
       now.add(p);
       about_centroid.add(p - centroid);
@@ -106,7 +197,9 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
     const dvec3 size = now.size();
     largest = std::max({largest, size.x, size.y, size.z});
   }
-  framing.follows = view.follow == "always" || (view.follow == "auto" && glm::length(centroids.size()) > strays * largest);
+  framing.follows = !view.eye && !view.target &&
+                    (view.follow == "always" || view.follow == "vesicle" ||
+                     (view.follow == "auto" && glm::length(centroids.size()) > strays * largest));
 
   Extent all = about_centroid;
   if (!framing.follows) {
@@ -114,37 +207,84 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
     for (const StateSummary& state : states)
       for (const dvec3 point : state.points) all.add(to_axes * point);
   }
-  const dvec3 centre = from_axes * all.centre();
+  const dvec3 centre = view.target ? to_glm(*view.target) : from_axes * all.centre();
   (framing.follows ? framing.offset : framing.target) = centre;
   framing.depth = std::max(all.size().z / 2, 1e-3);
+  if (framing.turns()) framing.depth = std::max(glm::length(all.size()) / 2, 1e-3);
+  if (framing.vesicle >= 0 || view.target || view.eye) {  // others may lie farther off
+    for (const StateSummary& state : states)
+      for (const dvec3 point : state.points)
+        framing.depth = std::max(framing.depth, glm::distance(point, framing.follows ? framing.moment(state).centre + framing.offset
+                                                                                     : framing.target));
+  }
+  if (view.eye) {
+    place_eye(framing, view);
+    return framing;
+  }
 
   // The picture must hold every point; a nearer one looks larger.
-  const double tx = tangent_of_half_angle * framing.aspect * fill_width, ty = tangent_of_half_angle * fill_height;
+  const double margin = framing.vesicle >= 0 ? neighbourhood : 1;
+  const double tx = tangent_of_half_angle * framing.aspect * fill_width / margin, ty = tangent_of_half_angle * fill_height / margin;
   double distance = 1e-3, half_height = 1e-3;
-  for (const StateSummary& state : states)
-    for (const dvec3 point : state.points) {
-      const dvec3 origin = framing.follows ? state.centroid + framing.offset : framing.target;
-      const dvec3 p = to_axes * (point - origin);
+  for (const StateSummary& state : states) {
+    const ViewAxes axes = framing.axes_at(state.time);
+    const glm::dmat3 to_picture = glm::transpose(glm::dmat3(axes.right, axes.up, axes.back));
+    for (const dvec3 point : shown(state)) {
+      const dvec3 origin = framing.follows ? framing.moment(state).centre + framing.offset : framing.target;
+      const dvec3 p = to_picture * (point - origin);
       distance = std::max({distance, p.z + std::abs(p.x) / tx, p.z + std::abs(p.y) / ty});
-      half_height = std::max({half_height, std::abs(p.y) / fill_height, std::abs(p.x) / (fill_width * framing.aspect)});
+      half_height = std::max({half_height, margin * std::abs(p.y) / fill_height,
+                              margin * std::abs(p.x) / (fill_width * framing.aspect)});
     }
+  }
   framing.distance = distance / view.zoom;
   framing.half_height = framing.perspective ? framing.distance * tangent_of_half_angle : half_height / view.zoom;
   return framing;
 }
 
-Camera make_camera(const Framing& framing, const dvec3& centroid) {
+void check_framing(const Framing& framing, std::span<const StateSummary> states) {
+  bool seen = false;
+  for (const StateSummary& state : states) {
+    const Camera camera = make_camera(framing, framing.moment(state));
+    for (const glm::vec3& point : state.points) {
+      const glm::vec4 clip = camera.projection * (camera.view * glm::vec4(point, 1));
+      seen = seen || (clip.w > 0 && std::max(std::abs(clip.x), std::abs(clip.y)) < clip.w);
+    }
+    if (!framing.perspective || state.areas.size() != state.points.size()) continue;
+    // The solid angle of a closed surface is 4 pi from inside and 0 from outside.
+    const std::size_t vesicles = state.centroids.size(), each = state.points.size() / std::max<std::size_t>(vesicles, 1);
+    for (std::size_t v = 0; v < vesicles; ++v) {
+      double angle = 0;
+      for (std::size_t i = v * each; i < (v + 1) * each; ++i) {
+        const dvec3 away = dvec3(state.points[i]) - camera.eye;
+        angle += glm::dot(away, dvec3(state.areas[i])) / std::max(std::pow(glm::length(away), 3), 1e-12);
+      }
+      if (angle > 2 * std::numbers::pi)
+        throw std::invalid_argument(fmt::format("the camera is inside vesicle {} at t = {:.6g}; {}", v, state.time,
+                                                framing.placed ? "move view.eye" : "lower view.zoom"));
+    }
+  }
+  if (!seen)
+    throw std::invalid_argument("this view shows nothing: no vesicle comes into the picture; change view.eye, view.target or "
+                                "view.zoom");
+}
+
+Camera make_camera(const Framing& framing, const Moment& moment) {
   Camera camera;
-  camera.target = framing.follows ? centroid + framing.offset : framing.target;
-  camera.half_height = framing.half_height;
-  camera.half_width = framing.half_height * framing.aspect;
+  const ViewAxes axes = framing.axes_at(moment.time);
+  const double zoom = camera_at(framing.keys, moment.time).zoom;
+  camera.target = framing.follows ? moment.centre + framing.offset : framing.target;
+  camera.half_height = framing.half_height / zoom;
+  camera.half_width = framing.half_height / zoom * framing.aspect;
   camera.perspective = framing.perspective;
   camera.follows = framing.follows;
 
   const double reach = 4 * (framing.depth + framing.half_height * std::max(1.0, framing.aspect));
-  const double distance = framing.perspective ? framing.distance : 2 * reach;
+  // Keys come nearer; a placed eye stays and sees a narrower field.
+  const double distance = framing.perspective ? framing.distance / zoom : 2 * reach;
   const double near = std::max(distance - reach, 0.02 * distance), far = distance + reach;
-  camera.view = glm::lookAt(camera.target + distance * framing.axes.back, camera.target, framing.axes.up);
+  camera.eye = camera.target + distance * axes.back;
+  camera.view = glm::lookAt(camera.eye, camera.target, axes.up);
   const double w = camera.half_width, h = camera.half_height;
   const double share = near / distance;  // of the near plane's size in that of the target
   camera.projection = framing.perspective ? glm::frustum(-w * share, w * share, -h * share, h * share, near, far)
@@ -157,10 +297,10 @@ glm::dvec2 Camera::picture_place(const dvec3& point) const {
   return glm::dvec2(clip) / static_cast<double>(clip.w);
 }
 
-sim::Matrix arrow_points(const Framing& framing, const dvec3& centroid) {
-  const Camera camera = make_camera(framing, centroid);
+sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
+  const Camera camera = make_camera(framing, moment);
   // The coordinate plane that faces the viewer most, through the target: there the velocity is what it seems to be.
-  const ViewAxes& axes = framing.axes;
+  const ViewAxes axes = framing.axes_at(moment.time);
   const auto leading = [](const dvec3& v) {
     const dvec3 a = glm::abs(v);
     return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
@@ -195,6 +335,21 @@ sim::Matrix arrow_points(const Framing& framing, const dvec3& centroid) {
   sim::Matrix result(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t k = 0; k < points.size(); ++k) result.row(static_cast<Eigen::Index>(k)) = to_sim(points[k]).transpose();
   return result;
+}
+
+int panel_columns(int count, int width, int height) {
+  int best = 1;
+  double least = 1e300;
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    const double aspect = static_cast<double>(width) * rows / (static_cast<double>(height) * columns);
+    const double cost = std::abs(std::log(aspect / 1.33)) + 0.3 * (rows * columns - count);  // empty places look unfinished
+    if (cost < least - 1e-12) {
+      least = cost;
+      best = columns;
+    }
+  }
+  return best;
 }
 
 double clear_of_captions(const glm::dvec2& place) {

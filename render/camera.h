@@ -27,36 +27,68 @@ const std::vector<CameraRow>& cameras();
 /// Throws std::invalid_argument that names the nearest known camera.
 const CameraRow& find_camera(std::string_view name);
 
-/// What framing needs to know of one state: a coarse net of points on every membrane, and their mean.
+/// What framing needs to know of one state: a coarse net of points on every membrane, and their means.
 struct StateSummary {
-  glm::dvec3 centroid{0};  ///< of the area of all vesicles
-  std::vector<glm::vec3> points;
+  double time = 0;
+  glm::dvec3 centroid{0};              ///< of the area of all vesicles
+  std::vector<glm::dvec3> centroids;   ///< of each
+  std::vector<glm::vec3> points;       ///< as many of each vesicle, one vesicle after the other
+  std::vector<glm::vec3> areas;        ///< outward normal times the share of the area that a point stands for
 };
 StateSummary summarize(const sim::State& state);
 
+/// The instant that a camera sees: what it follows, and the time for cameras that move by themselves.
+struct Moment {
+  glm::dvec3 centre{0};
+  double time = 0;
+  Moment(const glm::dvec3& where, double when = 0) : centre(where), time(when) {}
+};
+
+/// A key frame, see KeyFrameParameters.
+struct CameraKey {
+  double time = 0, azimuth = 0, elevation = 0, zoom = 1;
+};
+/// Between keys a cubic without overshoot in time, at rest at the first and last key and beyond them. Keys are in order.
+CameraKey camera_at(std::span<const CameraKey> keys, double time);
+
 /// One framing serves a whole movie, so nothing jumps or breathes.
 struct Framing {
-  ViewAxes axes;
+  ViewAxes axes;               ///< of a camera that does not turn
+  std::vector<CameraKey> keys; ///< in the order of time; not empty: they give the axes
+  double orbit = 0;            ///< radians per unit of time about the z axis
+  int vesicle = -1;            ///< that a following camera follows; -1: the centroid of all
   bool follows = false;  ///< target = centroid of the frame's own state
   glm::dvec3 target{0};  ///< of a fixed framing
   glm::dvec3 offset{0};  ///< of a following one: target - centroid
+  bool placed = false;   ///< the eye stands where the scene says
   bool perspective = true;
   double distance = 10;      ///< from the eye to the target, when perspective
   double half_height = 1;    ///< of the picture in the plane of the target, length
   double aspect = 16.0 / 9;  ///< width / height
   double depth = 1;          ///< everything lies within +-depth of the target along the line of sight
+
+  bool turns() const { return !keys.empty() || orbit != 0; }
+  ViewAxes axes_at(double time) const;
+  Moment moment(const StateSummary& state) const;
 };
 
 /// Fits all states into the picture, with room for captions. `follow = "auto"` follows the centroid when it strays by
 /// more than 1.5 times the size of what is seen at one instant (a few radii for a single vesicle); a following framing
 /// takes its scale from the largest extent about the centroid at any instant. Empty input frames the unit sphere.
-Framing frame_trajectory(std::span<const StateSummary> states, const ViewParameters& view);
+/// view.follow "vesicle" follows that one, with room for its neighbours; view.eye and view.target place the camera instead.
+/// Throws std::invalid_argument for a vesicle that does not exist, or an eye in its own target.
+Framing frame_trajectory(std::span<const StateSummary> states, const ViewParameters& view,
+                         std::span<const KeyFrameParameters> key_frames = {});
+/// Throws std::invalid_argument with one sentence when no state comes into the picture, or when the eye lies inside a
+/// vesicle at any of these instants.
+void check_framing(const Framing& framing, std::span<const StateSummary> states);
 
 /// The matrices of one frame.
 struct Camera {
   glm::mat4 view{1};                       ///< scene -> eye: x right, y up, z toward the viewer
   glm::mat4 projection{1};                 ///< eye -> clip
   glm::dvec3 target{0};                    ///< in the middle of the picture
+  glm::dvec3 eye{0};                       ///< orthographic: far off
   double half_width = 1, half_height = 1;  ///< of the picture in the plane of the target
   bool perspective = true;
   bool follows = false;  ///< moves with the vesicles
@@ -64,12 +96,15 @@ struct Camera {
   /// Where a point of the scene is seen: -1..1 from left to right and from bottom to top.
   glm::dvec2 picture_place(const glm::dvec3& point) const;
 };
-/// centroid: of the frame's own state; a fixed framing ignores it.
-Camera make_camera(const Framing& framing, const glm::dvec3& centroid);
+/// moment: of the frame's own state; only framings that follow or turn look at it.
+Camera make_camera(const Framing& framing, const Moment& moment);
 
 /// Middles of the flow arrows: a regular net in the coordinate plane through the target that faces the viewer most, clear
 /// of the captions. count x 3. The net is fixed in space under a following camera, so that arrows pass by.
-sim::Matrix arrow_points(const Framing& framing, const glm::dvec3& centroid);
+sim::Matrix arrow_points(const Framing& framing, const Moment& moment);
+
+/// Columns of the most even division of a picture into `count` panels.
+int panel_columns(int count, int width, int height);
 
 /// 0 where captions stand, 1 elsewhere, smooth between. place: as Camera::picture_place() gives it.
 double clear_of_captions(const glm::dvec2& place);

@@ -57,6 +57,26 @@ double clear_of_bodies(const std::vector<glm::dvec2>& shadows, const glm::dvec2&
   return glm::smoothstep(near, far, std::sqrt(nearest2));
 }
 
+// 0 where the colour bar, axes, profile or inset stand, 1 elsewhere, smooth between; place as Camera::picture_place() gives it.
+double clear_of_annotation(const Frame& frame, const glm::dvec2& place) {
+  constexpr double ramp = 0.10;  // half heights, as all lengths here
+  const double aspect = frame.camera.half_width / frame.camera.half_height;
+  const double from_left = (1 + place.x) * aspect, from_right = (1 - place.x) * aspect;
+  double clear = 1;
+  const auto keep = [&](bool shown, double x, double low, double high) {  // x: how far beyond the annotation's inner edge
+    if (!shown) return;
+    const double outside = std::max({x, low - place.y, place.y - high}) / ramp;
+    clear = std::min(clear, glm::smoothstep(0.0, 1.0, outside));
+  };
+  keep(frame.legend && frame.view.colour_bar, from_right - 0.42, -0.52, 0.68);
+  keep(frame.view.triad, from_right - 0.45, -1, -0.62);
+  keep(frame.inset && frame.view.inset, from_right - 0.72, 0.48, 1);
+  keep(frame.profile && frame.view.flow_profile, from_left - 0.25 * aspect, -0.72, 0.78);
+  keep(!frame.captions.title.empty(), 0, 0.82, 1);
+  keep(!frame.captions.panel.empty(), 0, -1, -0.84);
+  return clear;
+}
+
 void check(const ViewParameters& view) {
   if (view.size.size() != 2 || view.size[0] < 1 || view.size[1] < 1)
     throw std::invalid_argument("view.size needs a width and a height of at least 1 px");
@@ -175,6 +195,7 @@ void Renderer::draw_arrows(const Frame& frame) {
     const glm::dvec3 middle = to_glm(flow.points.row(i)), arrow = v * longest_arrow * camera.half_height;
     if (!rests && !(glm::length(v) >= weakest_arrow)) continue;
     const double shown = clear_of_captions(camera.picture_place(middle)) *
+                         clear_of_annotation(frame, camera.picture_place(middle)) *
                          clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
     if (shown <= 0) continue;
     starts.emplace_back(middle, shown);

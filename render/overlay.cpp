@@ -1,5 +1,6 @@
 #include "overlay.h"
 
+#include "annotation.h"
 #include "colour_bar.h"
 #include "picture_canvas.h"
 
@@ -11,6 +12,9 @@ namespace render {
 void draw_captions(Image& image, const Font& font, const Frame& frame) {
   const ViewParameters& view = frame.view;
   if (frame.legend && view.colour_bar) draw_colour_bar(image, font, *frame.legend);
+  if (frame.profile && view.flow_profile) draw_flow_profile(image, font, *frame.profile);
+  if (frame.inset && view.inset) draw_inset(image, font, *frame.inset);
+  if (view.triad) draw_triad(image, font, frame.camera);
   const Captions& captions = frame.captions;
   const bool time = view.time_stamp && !captions.time.empty();
   const bool parameters = view.caption && !captions.parameters.empty();
@@ -30,6 +34,26 @@ void draw_captions(Image& image, const Font& font, const Frame& frame) {
         draw_text(cairo, font, small, margin, y, captions.parameters);
       }
     });
+  }
+  if (!captions.title.empty() || !captions.panel.empty()) {
+    const double top = margin + 0.76 * large;
+    draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(top + large))}, [&](cairo_t* cairo) {
+      set_colour(cairo, ink);
+      if (!captions.title.empty()) {
+        // as large as fits beside the time and the parameters
+        const double aside = std::max(text_width(cairo, font, large, captions.time) * time,
+                                      text_width(cairo, font, small, captions.parameters) * parameters);
+        const double room = image.width - 2 * (margin + aside + large), width = text_width(cairo, font, large, captions.title);
+        const double size = width > room && room > 0 ? std::max(large * room / width, small) : large;
+        draw_text(cairo, font, size, image.width / 2.0, top, captions.title, Align::centre);
+      }
+    });
+    if (!captions.panel.empty())
+      draw_on(image, {0, static_cast<int>(image.height - margin - 2 * small), image.width, static_cast<int>(margin + 2 * small)},
+              [&](cairo_t* cairo) {
+                set_colour(cairo, soft_ink);
+                draw_text(cairo, font, small, image.width / 2.0, image.height - margin, captions.panel, Align::centre);
+              });
   }
   if (view.scale_bar && captions.scale_length > 0) {
     const double length = captions.scale_length / frame.camera.half_width * image.width / 2;

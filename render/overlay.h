@@ -1,4 +1,4 @@
-// What is written on a finished frame: time, parameters, scale bar.
+// What is written on a finished frame: time, parameters, title, scale bar, and what explains it.
 #pragma once
 
 #include "image.h"

@@ -45,8 +45,27 @@ struct FlowArrows {
 struct Captions {
   std::string time;             ///< "γ̇t = 12.50"
   std::string parameters;       ///< "Ca = 2.0   λ = 1   ν = 0.85"
+  std::string title;            ///< in the middle of the upper edge
+  std::string panel;            ///< in the upper right corner: which view this is
   std::string scale = "R_{0}";  ///< above the scale bar
   double scale_length = 1;      ///< of the bar, in lengths of the scene
+};
+
+/// Background velocity along a vertical line through the middle of the picture.
+struct FlowProfile {
+  std::vector<glm::dvec2> points;  ///< place: -1..1 from bottom to top of the picture; velocity to its right
+  double reference_speed = 0;      ///< drawn at full length; 0: the fastest of these
+};
+
+/// The section of all vesicles with a plane y = constant.
+struct Inset {
+  struct Curve {
+    std::vector<glm::dvec2> points;  ///< (x, z), closed
+    Colour colour;
+  };
+  std::vector<Curve> curves;
+  glm::dvec2 centre{0};
+  double half_height = 1;
 };
 
 struct Frame {
@@ -55,6 +74,8 @@ struct Frame {
   ViewParameters view;
   Captions captions;
   FlowArrows arrows;
+  std::optional<FlowProfile> profile;
+  std::optional<Inset> inset;
   std::optional<Legend> legend;  ///< needed by the style "field"
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/compare.h"
+#include "render/cutaway.h"
 #include "render/mesh.h"
 #include "render/parameters.h"
 #include "render/scene.h"
@@ -99,6 +100,22 @@ inline render::Frame frame_of(const sim::State& state, const render::ViewParamet
     frame.bodies.push_back({render::make_mesh(plan, state.vesicles[v]), render::body_colour(v), {}});
   frame.camera = render::make_camera(render::frame_trajectory(std::span(&summary, 1), view), summary.centroid);
   frame.view = view;
+  return frame;
+}
+
+/// A frame that every style can paint: the field is z, the plane y = 0 takes away the nearer half.
+inline render::Frame painted(render::Frame frame, const sim::State& state) {
+  render::Legend legend;
+  legend.label = "z";
+  legend.low = -1;
+  legend.colours = render::colour_table(render::find_colour_map("viridis"));
+  for (std::size_t v = 0; v < frame.bodies.size(); ++v) {
+    render::Body& body = frame.bodies[v];
+    for (const glm::vec3& p : body.mesh.position) body.mesh.scalar.push_back(p.z);
+    body.cut = render::make_cut(state.vesicles[v].position, -Vec3::UnitY(), 0);
+  }
+  frame.legend = legend;
+  frame.view.colour_bar = false;
   return frame;
 }
 

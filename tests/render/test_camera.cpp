@@ -78,7 +78,7 @@ TEST_CASE("the camera stays until the drift exceeds a few radii, then follows") 
   const auto states = drifting(1);
   const render::Framing framing = render::frame_trajectory(states, always);
   CHECK(framing.follows);
-  CHECK(glm::distance(render::make_camera(framing, {5, 6, 7}).target, {5, 6, 7}) < 1e-2);
+  CHECK(glm::distance(render::make_camera(framing, glm::dvec3(5, 6, 7)).target, {5, 6, 7}) < 1e-2);
 }
 
 TEST_CASE("a fixed camera gives one and the same matrix for every frame") {
@@ -92,7 +92,8 @@ TEST_CASE("arrows of a following camera stay at rest in space") {
   const auto states = drifting(40, 41);
   const render::Framing framing = render::frame_trajectory(states, {});
   REQUIRE(framing.follows);
-  const sim::Matrix a = render::arrow_points(framing, {10, 0, 0.3}), b = render::arrow_points(framing, {10.1, 0, 0.3});
+  const sim::Matrix a = render::arrow_points(framing, glm::dvec3(10, 0, 0.3)),
+                    b = render::arrow_points(framing, glm::dvec3(10.1, 0, 0.3));
   int common = 0;
   for (Eigen::Index i = 0; i < a.rows(); ++i)
     for (Eigen::Index j = 0; j < b.rows(); ++j) common += (a.row(i) - b.row(j)).norm() < 1e-9;

@@ -1,0 +1,25 @@
+// Movie files that ffmpeg writes for us, a row each.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace app {
+
+struct MovieFormat {
+  std::string_view name;     ///< also the extension
+  std::string_view meaning;
+  bool even_size;            ///< the encoder refuses odd widths and heights
+  double fastest;            ///< frames per second that players follow; more are left out
+  std::string_view muxer;
+  std::vector<std::string> encoder;  ///< arguments of ffmpeg after the input
+};
+const std::vector<MovieFormat>& movie_formats();
+/// Throws std::invalid_argument that names the nearest known format.
+const MovieFormat& find_movie_format(std::string_view name);
+
+/// Throws std::invalid_argument with one sentence when a movie of this size cannot be made.
+void check_movie(const MovieFormat&, int width, int height);
+
+}  // namespace app

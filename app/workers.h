@@ -1,0 +1,12 @@
+// Other processes of this program that draw shards of the frames: software OpenGL draws one picture at a time in a process.
+#pragma once
+
+#include "options.h"
+
+namespace app {
+
+/// Starts `render` once for each of options.jobs shards and waits for all. Throws std::runtime_error when one fails, with its
+/// own sentence already on standard error. Returns false after an interruption.
+bool draw_in_processes(const Options&, const std::filesystem::path& folder);
+
+}  // namespace app

@@ -1,0 +1,21 @@
+// What explains a picture beside its captions: axes, profile of the background flow, cross-section, names of panels.
+#pragma once
+
+#include "picture_canvas.h"
+#include "scene.h"
+
+namespace render {
+
+/// Directions of x, y, z in the lower right corner; an axis along the line of sight is a dot or a cross in a ring.
+void draw_triad(Image& image, const Font& font, const Camera& camera);
+
+/// Arrows between a vertical line and the profile, at the left edge of the picture.
+void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profile);
+
+/// The (x, z) cross-section in a box in the upper right corner.
+void draw_inset(Image& image, const Font& font, const Inset& inset);
+
+/// Thin lines between the panels of a picture.
+void draw_separators(Image& image, int columns, int rows, int width, int height);
+
+}  // namespace render
