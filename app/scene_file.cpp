@@ -4,6 +4,7 @@
 #include "scene_overrides.h"
 #include "scene_values.h"
 
+#include "render/palette.h"
 #include "sim/placements.h"
 #include "sim/shapes.h"
 
@@ -74,6 +75,15 @@ struct Reader {
   }
   void check(const toml::table& table, render::ViewParameters& p) const {
     if (p.size.size() != 2) fail_at(source_of(table, "size"), "'size' must be two whole numbers, [width, height]");
+    if (!p.field_range.empty() && (p.field_range.size() != 2 || !(p.field_range[0] < p.field_range[1])))
+      fail_at(source_of(table, "field_range"), "'field_range' must be two numbers, [lowest, highest], or []");
+    if (p.cut_normal.norm() == 0) fail_at(source_of(table, "cut_normal"), "'cut_normal' must not be the zero vector");
+    if (p.up.norm() == 0) fail_at(source_of(table, "up"), "'up' must not be the zero vector");
+    try {
+      for (const std::string& colour : p.colours) render::parse_colour(colour);
+    } catch (const std::invalid_argument& error) {
+      fail_at(source_of(table, "colours"), error.what());
+    }
   }
   void check(const toml::table& table, sim::TimeParameters& p) const {
     if (p.end / p.step > 1e9)
