@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 namespace app {
 
@@ -86,7 +87,7 @@ render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render
 
 ViewPanel make_panel(const PictureSource& source, const render::ViewParameters& view, const Painting& painting,
                  const std::vector<render::StateSummary>& summaries, const render::Captions& captions) {
-  ViewPanel p{source, view, render::frame_trajectory(summaries, view, source.settings.key_frames), 0, captions, painting, true};
+  ViewPanel p{source, view, render::frame_trajectory(summaries, view, source.settings.key_frames), 0, captions, painting, true, {}, 0};
   render::check_framing(p.framing, summaries);
   for (const render::StateSummary& summary : summaries) {
     const render::FlowArrows arrows = arrows_of(p, summary);
@@ -94,6 +95,26 @@ ViewPanel make_panel(const PictureSource& source, const render::ViewParameters& 
       p.arrow_speed = std::max(p.arrow_speed, arrows.velocities.rowwise().norm().maxCoeff());
   }
   return p;
+}
+
+/// The jump of the lines is told before it comes, and for a while after it.
+std::string laid_note(const ViewPanel& p, double time) {
+  if (p.view.lines != "material" || !p.view.time_stamp) return {};
+  for (const double laid : p.laid)
+    if (std::abs(time - laid) <= p.notice)
+      return fmt::format("lines and dots {} at {}", time < laid ? "will be laid anew" : "were laid anew",
+                         time_caption(p.source.settings.scene, laid));
+  return {};
+}
+
+/// Scene time that passes in `seconds` of the movie.
+double scene_time(const PictureSource& source, double seconds) {
+  const render::MovieParameters& movie = source.settings.movie;
+  const std::int64_t states = source.trajectory.count();
+  const double per_frame = movie.time_per_frame > 0 ? movie.time_per_frame
+                           : states > 1             ? source.trajectory.time(states - 1) / static_cast<double>(states - 1)
+                                                    : 0;
+  return seconds * movie.frame_rate * per_frame;
 }
 
 render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& state) {
@@ -115,7 +136,10 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   if (frame.view.flow_profile) frame.profile = profile_of(p, frame.camera, state.time);
   if (frame.view.inset) frame.inset = inset_of(p, state, frame.camera);
   frame.captions = p.captions;
-  if (p.stamped) frame.captions.time = time_caption(p.source.settings.scene, state.time);
+  if (p.stamped) {
+    frame.captions.time = time_caption(p.source.settings.scene, state.time);
+    frame.captions.note = laid_note(p, state.time);
+  }
   return frame;
 }
 
@@ -145,11 +169,19 @@ Production prepare_pictures(const std::vector<PictureSource>& sources) {
   std::vector<Painting> paintings;
   std::vector<std::vector<render::StateSummary>> summaries(sources.size());
   std::vector<render::Captions> captions;
+  std::vector<std::vector<double>> laid;
   const render::ViewParameters& first = sources.front().settings.view;
   for (std::size_t k = 0; k < sources.size(); ++k) {
     const auto& [trajectory, settings] = sources[k];
     const std::vector<std::int64_t> chosen = instants_to_look_at(trajectory);
-    for (const std::int64_t i : chosen) summaries[k].push_back(render::summarize(trajectory.state(i)));
+    std::set<double> times;
+    for (const std::int64_t i : chosen) {
+      const sim::State state = trajectory.state(i);
+      summaries[k].push_back(render::summarize(state));
+      for (const sim::VesicleState& v : state.vesicles)
+        if (v.labels_laid > 0) times.insert(v.labels_laid_time);
+    }
+    laid.emplace_back(times.begin(), times.end());
     sim::Plans plans;
     const sim::VesicleMeasures measures = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
     const double area_radius = std::sqrt(measures.area / sim::default_area);
@@ -188,7 +220,10 @@ Production prepare_pictures(const std::vector<PictureSource>& sources) {
         captions[k].panel = cameras[c];
       }
       production.panels.push_back(make_panel(sources[k], view, paintings[k], summaries[k], captions[k]));
+      constexpr double notice = 1.2;  // seconds
       production.panels.back().stamped = c == 0;
+      production.panels.back().laid = laid[k];
+      production.panels.back().notice = scene_time(sources[k], notice);
     }
   return production;
 }
@@ -235,7 +270,7 @@ std::vector<render::Image> draw_stills(const sim::TrajectoryReader& trajectory, 
     const sim::State state = state_at(trajectory, still.time);
     plain.view.size = {still.width, still.height};
     ViewPanel p{{trajectory, plain}, plain.view, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view), 0, {},
-            painting, false};
+            painting, false, {}, 0};
     const glm::dvec3 target = render::to_glm(still.target);
     p.framing.depth += glm::length(target - p.framing.target);
     p.framing.follows = false;

@@ -25,7 +25,9 @@ struct ViewPanel {
   double arrow_speed = 0;
   render::Captions captions;  ///< without the time
   Painting painting;
-  bool stamped = true;  ///< shows the time
+  bool stamped = true;  ///< shows the time and notes
+  std::vector<double> laid;  ///< when material lines were laid anew on any vesicle
+  double notice = 0;         ///< how long before and after that a note says so, in time of the scene
 };
 
 struct Production {

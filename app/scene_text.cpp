@@ -106,7 +106,9 @@ std::string picture_hash(const Settings& settings) {
   Settings same = settings;
   same.scene.numerics.threads = 0;
   same.figures.clear();
-  same.movie.frame_rate = 30;  // of the video, not of a frame
+  same.movie.frame_rate = 30;  // of the video, not of a frame; and so on
+  same.movie.format = render::MovieParameters{}.format;
+  same.movie.poster.reset();
   return hash(write_scene(same));
 }
 

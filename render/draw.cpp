@@ -72,8 +72,9 @@ double clear_of_annotation(const Frame& frame, const glm::dvec2& place) {
   keep(frame.view.triad, from_right - 0.45, -1, -0.62);
   keep(frame.inset && frame.view.inset, from_right - 0.72, 0.48, 1);
   keep(frame.profile && frame.view.flow_profile, from_left - 0.25 * aspect, -0.72, 0.78);
-  keep(!frame.captions.title.empty(), 0, 0.82, 1);
-  keep(!frame.captions.panel.empty(), 0, -1, -0.84);
+  const double from_middle = std::abs(place.x) * aspect;
+  keep(!frame.captions.title.empty(), from_middle - 0.8, 0.80, 1);
+  keep(!frame.captions.panel.empty(), from_middle - 0.35, -1, -0.80);
   return clear;
 }
 

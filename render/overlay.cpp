@@ -20,8 +20,8 @@ void draw_captions(Image& image, const Font& font, const Frame& frame) {
   const bool parameters = view.caption && !captions.parameters.empty();
   const double unit = std::max(image.height, 0) / 1080.0;  // sizes below are px at 1080
   const double margin = 44 * unit, large = std::max(29 * unit, 9.0), small = std::max(21 * unit, 7.5);
-  if (time || parameters) {
-    const double height = margin + 1.2 * large + 1.6 * small;
+  if (time || parameters || !captions.note.empty()) {
+    const double height = margin + 1.2 * large + 3.4 * small;
     draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(height))}, [&](cairo_t* cairo) {
       double y = margin + 0.76 * large;
       if (time) {
@@ -32,6 +32,11 @@ void draw_captions(Image& image, const Font& font, const Frame& frame) {
       if (parameters) {
         set_colour(cairo, soft_ink);
         draw_text(cairo, font, small, margin, y, captions.parameters);
+        y += 1.7 * small;
+      }
+      if (!captions.note.empty()) {
+        set_colour(cairo, note_ink);
+        draw_text(cairo, font, small, margin, std::max(y, margin + 0.76 * large), captions.note);
       }
     });
   }

@@ -47,6 +47,7 @@ constexpr Colour curve_colour(std::size_t curve) { return curve_colours[curve % 
 inline constexpr Colour tracer_bright{0.95, 0.36, 0.22};
 inline constexpr Colour tracer_dark{0.13, 0.20, 0.31};
 inline constexpr Colour ink{0.13, 0.15, 0.19};       ///< text on pictures
+inline constexpr Colour note_ink{0.70, 0.30, 0.08};
 inline constexpr Colour soft_ink{0.36, 0.40, 0.46};  ///< captions
 inline constexpr Colour arrow_colour{0.80, 0.835, 0.88};
 inline constexpr Colour ground_top{0.985, 0.988, 0.993};

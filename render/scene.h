@@ -45,6 +45,7 @@ struct FlowArrows {
 struct Captions {
   std::string time;             ///< "γ̇t = 12.50"
   std::string parameters;       ///< "Ca = 2.0   λ = 1   ν = 0.85"
+  std::string note;             ///< below the parameters, set apart: something that the viewer must know now
   std::string title;            ///< in the middle of the upper edge
   std::string panel;            ///< in the upper right corner: which view this is
   std::string scale = "R_{0}";  ///< above the scale bar

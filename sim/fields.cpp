@@ -1,6 +1,7 @@
 #include "fields.h"
 
 #include "forces.h"
+#include "parallel.h"
 
 #include <cmath>
 #include <limits>
@@ -72,10 +73,10 @@ Net net_of(const Coefficients& position) {
 Vector neighbour_distance(const FieldSite& s) {
   std::vector<Net> nets;
   for (const VesicleState& v : s.state.vesicles) nets.push_back(net_of(v.position));
-  const double near = 0.3 * nets[s.vesicle].reach;  // below it the exact nearest point, above it the tangent plane will do
+  const double near = 0.3 * nets[s.vesicle].reach;  // below it the exact nearest point, above it that of the net
   const Matrix& x = s.geometry.x.value;
   Vector distance(x.rows());
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+  parallel_for(static_cast<int>(x.rows()), [&](int i) {
     const Vec3 here = x.row(i);
     double best = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < nets.size(); ++k) {
@@ -83,14 +84,16 @@ Vector neighbour_distance(const FieldSite& s) {
       if (k == s.vesicle || (here - net.centre).norm() - net.reach >= best) continue;
       Eigen::Index nearest = 0;
       const double rough = std::sqrt((net.points.rowwise() - here.transpose()).rowwise().squaredNorm().minCoeff(&nearest));
-      const double planar = std::abs(net.normals.row(nearest).dot(here.transpose() - net.points.row(nearest)));
-      best = std::min(best, rough > near ? planar
+      const double height = std::abs(net.normals.row(nearest).dot(here.transpose() - net.points.row(nearest)));
+      // Above the tangent plane of a surface that curves like the net's own sphere.
+      const double aside2 = std::max(rough * rough - height * height, 0.0), curved = height + 0.5 * aside2 / (net.reach + height);
+      best = std::min(best, rough > near ? std::min(rough, curved)
                                          : nearest_point(s.state.vesicles[k].position, here,
                                                          Vec3(net.parameters.row(nearest)))
                                                .distance);
     }
     distance[i] = best;
-  }
+  });
   return distance;
 }
 
