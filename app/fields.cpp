@@ -65,8 +65,12 @@ double quantile(std::vector<double>& values, double share) {
 
 /// Both ends moved outward to round numbers.
 std::pair<double, double> rounded(double low, double high) {
-  const double width = std::max(high - low, 1e-9 * std::max({std::abs(low), std::abs(high), 1e-12}));
-  const double power = std::pow(10, std::floor(std::log10(width / 10)));
+  if (const double size = std::max(std::abs(low), std::abs(high)); high - low <= 1e-6 * size || size == 0) {
+    const double room = size > 0 ? 0.1 * size : 1;  // one value everywhere, up to rounding errors
+    low -= room;
+    high += room;
+  }
+  const double width = high - low, power = std::pow(10, std::floor(std::log10(width / 10)));
   double step = 10 * power;
   for (const double factor : {5.0, 2.0, 1.0})
     if (factor * power >= width / 10 * (1 - 1e-9)) step = factor * power;

@@ -119,7 +119,7 @@ ColourTable colour_table(const ColourMapRow& map) {
 }
 
 Colour mapped(const ColourTable& table, double share) {
-  const double place = std::clamp(share, 0.0, 1.0) * (colour_steps - 1);
+  const double place = (share > 0 ? std::min(share, 1.0) : 0.0) * (colour_steps - 1);  // not a number: the low end
   const auto i = static_cast<std::size_t>(std::min(place, colour_steps - 2.0));
   const double u = place - static_cast<double>(i);
   const auto channel = [&](std::size_t k) { return ((1 - u) * table[i][k] + u * table[i + 1][k]) / 255; };

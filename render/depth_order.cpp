@@ -35,4 +35,21 @@ std::vector<std::uint32_t> back_to_front(const std::vector<Body>& bodies, const 
   return sorted;
 }
 
+std::vector<std::uint32_t> rim_triangles(const Mesh& mesh, const Camera& camera) {
+  constexpr float nearly_square = 0.3F;  // cosine; hulls reach two pixels beyond the rim, this reaches much farther inside
+  const glm::vec3 eye = camera.eye, back = glm::normalize(glm::vec3(camera.eye - camera.target));
+  std::vector<float> facing;
+  facing.reserve(mesh.position.size());
+  for (std::size_t k = 0; k < mesh.position.size(); ++k)
+    facing.push_back(glm::dot(mesh.normal[k], camera.perspective ? glm::normalize(eye - mesh.position[k]) : back));
+  std::vector<std::uint32_t> rim;
+  const std::span<const std::uint32_t> indices = mesh.plan->indices();
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    const float a = facing[indices[i]], b = facing[indices[i + 1]], c = facing[indices[i + 2]];
+    if (std::max({a, b, c}) > -nearly_square && std::min({a, b, c}) < nearly_square)
+      rim.insert(rim.end(), {indices[i], indices[i + 1], indices[i + 2]});
+  }
+  return rim;
+}
+
 }  // namespace render

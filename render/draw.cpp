@@ -107,6 +107,7 @@ Renderer::Renderer(const GlChoice& choice, std::filesystem::path shader_dir)
       shader_dir_(std::move(shader_dir)),
       nothing_(context_.gl()),
       bodies_(context_.gl()),
+      hulls_(context_.gl()),
       ghosts_(context_.gl()),
       ribbons_(context_.gl()),
       arrows_(context_.gl()),
@@ -270,18 +271,29 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
   gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(body.mesh.plan->indices().size()), GL_UNSIGNED_INT, nullptr);
 }
 
-void Renderer::draw_outline(const Frame& frame, const Body& body, double wider, double alpha) {
+void Renderer::draw_outline(const Frame& frame, const Body& body, OutlinePart part) {
   const Gl& gl = context_.gl();
   const Program& p = program("outline", "");
+  const std::vector<std::uint32_t> rim = rim_triangles(body.mesh, frame.camera);
   p.use();
   set_camera(p, frame.camera);
-  const float width = samples(frame.view, frame.view.outline_width, 1.0) + static_cast<float>(wider);
-  p.set("u_push", glm::vec2(2 * width / static_cast<float>(framebuffer_->width()),
-                            2 * width / static_cast<float>(framebuffer_->height())));
   p.set("u_colour", vector_of(outline_colour(body)));
-  p.set("u_alpha", static_cast<float>(alpha));
+  hulls_.attribute(0, body.mesh.position);
+  hulls_.attribute(1, body.mesh.normal);
+  hulls_.indices(rim);
   gl.CullFace(GL_FRONT);
-  gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(body.mesh.plan->indices().size()), GL_UNSIGNED_INT, nullptr);
+  const auto hull = [&](double more, double share) {
+    const float width = samples(frame.view, frame.view.outline_width, 1.0) + static_cast<float>(more);
+    p.set("u_push", glm::vec2(2 * width / static_cast<float>(framebuffer_->width()),
+                              2 * width / static_cast<float>(framebuffer_->height())));
+    p.set("u_alpha", static_cast<float>(share));
+    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(rim.size()), GL_UNSIGNED_INT, nullptr);
+  };
+  if (part == OutlinePart::core) hull(-1.0 / 3, 1);
+  if (part == OutlinePart::edge) {
+    hull(0, 1.0 / 2);
+    hull(1.0 / 3, 1.0 / 3);
+  }
   gl.CullFace(GL_BACK);
 }
 
@@ -411,7 +423,7 @@ void Renderer::draw_bodies(const Frame& frame) {
   const bool outlined = frame.view.outline_width > 0;
   for (const Body& body : frame.bodies) {
     draw_body(frame, body);
-    if (outlined) draw_outline(frame, body, -1.0 / 3, 1);
+    if (outlined) draw_outline(frame, body, OutlinePart::core);
   }
   if (!outlined) return;
   // Two hulls more make thirds of a sample at the outer edge. They let through what lies behind: all of that is there now.
@@ -419,11 +431,7 @@ void Renderer::draw_bodies(const Frame& frame) {
   gl.Enable(GL_BLEND);
   gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   gl.DepthMask(GL_FALSE);
-  for (const Body& body : frame.bodies) {
-    if (frame.bodies.size() > 1) upload(body);
-    draw_outline(frame, body, 0, 1.0 / 2);
-    draw_outline(frame, body, 1.0 / 3, 1.0 / 3);
-  }
+  for (const Body& body : frame.bodies) draw_outline(frame, body, OutlinePart::edge);
   gl.DepthMask(GL_TRUE);
   gl.Disable(GL_BLEND);
 }

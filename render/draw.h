@@ -36,14 +36,15 @@ class Renderer {
   void draw_cut_edges(const Frame&);
   void upload(const Body&);
   void draw_body(const Frame&, const Body&);
-  /// Of the body uploaded last, `wider` samples than the view's outline.
-  void draw_outline(const Frame&, const Body&, double wider, double alpha);
+  /// The core hides what lies behind; the edge is thirds of a sample that let it through.
+  enum class OutlinePart { core, edge };
+  void draw_outline(const Frame&, const Body&, OutlinePart);
   Image finish(const Frame&);
 
   GlContext context_;
   std::filesystem::path shader_dir_;
   std::map<std::string, Program> programs_;  ///< by name and defines
-  VertexArray nothing_, bodies_, ghosts_, ribbons_, arrows_, beads_;
+  VertexArray nothing_, bodies_, hulls_, ghosts_, ribbons_, arrows_, beads_;
   Palette palette_;
   std::shared_ptr<const MeshPlan> uploaded_plan_;
   std::optional<Framebuffer> framebuffer_;

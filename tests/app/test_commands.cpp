@@ -327,3 +327,95 @@ TEST_CASE("without ffmpeg, or with a broken one, the frames are kept and a sente
   CHECK_FALSE(fs::exists(desk / "b/movie.mp4"));
   CHECK_FALSE(fs::exists(desk / "b/movie.mp4.tmp"));
 }
+
+TEST_CASE("processes draw the very frames and movie that one draws alone", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  REQUIRE(desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--style", "ghost", "-j", "1"}).status == 0);
+  REQUIRE(desk({"render", desk.file("t.h5"), "-o", desk.file("b"), "--style", "ghost", "-j", "3"}).status == 0);
+  for (const char* name : {"frames/000000.png", "frames/000004.png", "frames/000005.png", "movie.mp4"})
+    CHECK(support::read_file(desk / "a" / name) == support::read_file(desk / "b" / name));
+}
+
+TEST_CASE("every movie format is written from the same frames, with a poster where asked for", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  for (const char* format : {"mp4", "mkv", "gif", "webp"}) {
+    INFO(format);
+    const Outcome outcome = desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--format", format, "--set", "movie.poster=0.3"});
+    CHECK(outcome.status == 0);
+    CHECK(fs::file_size(desk / (std::string("a/movie.") + format)) > 100);
+    if (std::string(format) != "mp4") CHECK_THAT(outcome.out, Contains("0 frames drawn, 6 kept"));
+  }
+  CHECK(support::read_file(desk / "a/poster.png") == support::read_file(desk / "a/frames/000003.png"));
+  CHECK_THAT(desk({"render", desk.file("t.h5"), "--format", "mp5"}).err, Contains("did you mean 'mp4'?"));
+}
+
+TEST_CASE("an odd size is refused for H.264 before anything is drawn, and drawn for other formats", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  const Outcome odd = desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--size", "65x48"});
+  CHECK(odd.status == 1);
+  CHECK_THAT(odd.err, Contains("even width and height, not 65 x 48") && Contains("66x48"));
+  CHECK_FALSE(fs::exists(desk / "a"));
+  CHECK(desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--size", "65x48", "--format", "mkv"}).status == 0);
+  CHECK(desk({"run", desk.file("s.toml"), "-o", desk.file("r"), "--set", "view.size=[65, 48]"}).status == 1);
+  CHECK_FALSE(fs::exists(desk / "r/trajectory.h5"));
+}
+
+TEST_CASE("a still is chosen by time, in any style, field and view", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  const auto still = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"render", desk.file("t.h5"), "--time", "0.25", "-o", desk.file("still.png")};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = desk(words);
+    INFO(outcome.err);
+    CHECK(outcome.status == 0);
+    return support::read_file(desk / "still.png");
+  };
+  std::set<std::string> pictures;
+  for (const char* style : {"opaque", "ghost", "cutaway", "checker"}) pictures.insert(still({"--style", style}));
+  for (const char* field : {"tension", "mean-curvature", "gaussian-curvature", "bending-force", "tension-force",
+                            "normal-velocity", "membrane-speed"})
+    pictures.insert(still({"--style", "field", "--set", std::string("view.field=") + field}));
+  pictures.insert(still({"--set", "view.views=[\"flow-gradient\", \"three-quarter\"]"}));
+  pictures.insert(still({"--set", "view.colours=[\"#336699\"]"}));
+  pictures.insert(still({"--set", "view.colour_by=viscosity_contrast"}));
+  pictures.insert(still({"--set", "view.inset=true", "--set", "view.triad=true", "--set", "view.flow_profile=true"}));
+  pictures.insert(still({"--set", "view.orbit=90"}));
+  pictures.insert(still({"--set", "view.eye=[2, -6, 3]"}));
+  CHECK(pictures.size() == 17);
+  CHECK_FALSE(fs::exists(desk / "frames"));
+  CHECK_THAT(desk({"render", desk.file("t.h5"), "--time", "0.6"}).err, Contains("to t = 0.5"));
+  CHECK_THAT(desk({"render", desk.file("t.h5"), "--style", "field", "--set", "view.field=neighbour-distance"}).err,
+             Contains("two vesicles"));
+  CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.field=tention"}).err, Contains("did you mean 'tension'?"));
+  CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.eye=[0, 0.1, 0]"}).err, Contains("inside vesicle 0"));
+}
+
+TEST_CASE("two trajectories stand side by side, the shorter one at rest at its end", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("a.h5"), "-q"}).status == 0);
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("b.h5"), "-q", "--set", "time.end=0.3"}).status == 0);
+  const Outcome outcome = desk({"render", desk.file("a.h5"), desk.file("b.h5"), "-o", desk.file("both"), "--size", "128x48"});
+  INFO(outcome.err);
+  CHECK(outcome.status == 0);
+  CHECK(fs::exists(desk / "both/frames/000005.png"));
+}
+
+TEST_CASE("a full disk ends with one sentence; frames made before are kept, none is half written", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  REQUIRE(desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--size", "320x240", "--shard", "0/3"}).status == 0);
+  const std::string before = support::read_file(desk / "a/frames/000000.png");
+  // A limit on the size of files stands for the disk.
+  const Outcome full = support::run(
+      desk, {"/bin/sh", "-c", "trap '' XFSZ; ulimit -f 4; exec \"$@\"", "sh", TANKTREAD_PROGRAM, "render", desk.file("t.h5"),
+             "-o", desk.file("a"), "--size", "320x240", "--format", "mkv"});
+  CHECK(full.status == 1);
+  CHECK_THAT(full.err, Contains("File too large") && Contains("complete in") && Contains("continues"));
+  CHECK(support::read_file(desk / "a/frames/000000.png") == before);
+  CHECK_FALSE(fs::exists(desk / "a/frames/000001.png"));
+  for (const auto& entry : fs::directory_iterator(desk / "a/frames")) CHECK(entry.path().extension() == ".png");
+}

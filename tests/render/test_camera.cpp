@@ -127,3 +127,105 @@ TEST_CASE("an unknown camera is refused with the nearest known word") {
   CHECK_THAT(support::message_of([] { render::find_camera("flow-gradiant"); }),
              Catch::Contains("did you mean 'flow-gradient'"));
 }
+
+namespace {
+
+/// Two spheres that stay where they are while time passes.
+std::vector<render::StateSummary> pair_at_rest() {
+  std::vector<render::StateSummary> all;
+  for (int k = 0; k <= 10; ++k) {
+    sim::State state = surfaces::state_of({surfaces::sphere({-1.5, 0, 0}), surfaces::sphere({1.5, 0, 0})});
+    state.time = k;
+    all.push_back(render::summarize(state));
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("an orbiting camera goes round the z axis at its rate and keeps everything in the picture") {
+  render::ViewParameters view;
+  view.orbit = 36;
+  const auto states = pair_at_rest();
+  const render::Framing framing = render::frame_trajectory(states, view);
+  for (const render::StateSummary& state : states) {
+    const render::Camera camera = render::make_camera(framing, framing.moment(state));
+    const glm::dvec3 d = camera.eye - camera.target;
+    const double angle = glm::radians(36 * state.time);
+    CHECK(d.x / glm::length(d) == Approx(std::sin(angle)).margin(1e-9));  // from -y, counter-clockwise seen from above
+    CHECK(d.y / glm::length(d) == Approx(-std::cos(angle)).margin(1e-9));
+    for (const glm::vec3& point : state.points)
+      CHECK(std::max(std::abs(projected(camera, point).x), std::abs(projected(camera, point).y)) < 0.9F);
+  }
+}
+
+TEST_CASE("key frames are met, with rest at the ends and without overshoot between") {
+  const std::vector<render::CameraKey> keys{{1, 0, 0, 1}, {3, 90, 20, 2}, {4, 100, 20, 1}};
+  for (const render::CameraKey& key : keys) {
+    CHECK(render::camera_at(keys, key.time).azimuth == Approx(key.azimuth));
+    CHECK(render::camera_at(keys, key.time).zoom == Approx(key.zoom));
+  }
+  CHECK(render::camera_at(keys, 0).azimuth == 0);
+  CHECK(render::camera_at(keys, 9).azimuth == 100);
+  CHECK(render::camera_at(keys, 1.001).azimuth < 0.01);
+  double before = 0;
+  for (double t = 1; t <= 4; t += 0.05) {
+    const render::CameraKey now = render::camera_at(keys, t);
+    CHECK(now.azimuth >= before - 1e-9);
+    CHECK(now.elevation <= 20 + 1e-9);
+    before = now.azimuth;
+  }
+  // smooth: slopes from both sides of a key agree
+  const auto slope = [&](double t, double h) {
+    return (render::camera_at(keys, t + h).azimuth - render::camera_at(keys, t).azimuth) / h;
+  };
+  CHECK(slope(3, 1e-5) == Approx(slope(3, -1e-5)).epsilon(1e-3));
+  CHECK(render::camera_at({}, 5).zoom == 1);
+}
+
+TEST_CASE("a camera that follows one vesicle keeps it in the middle") {
+  render::ViewParameters view;
+  view.follow = "vesicle";
+  view.follow_vesicle = 1;
+  const auto states = pair_at_rest();
+  const render::Framing framing = render::frame_trajectory(states, view);
+  const render::Camera camera = render::make_camera(framing, framing.moment(states[0]));
+  CHECK(projected(camera, {1.5, 0, 0}).x == Approx(0).margin(1e-5));
+  CHECK(projected(camera, {1.5, 0, 1}).y > 0.3F);
+  view.follow_vesicle = 2;
+  CHECK_THAT(support::message_of([&] { render::frame_trajectory(states, view); }), Catch::Contains("from 0 to 1"));
+}
+
+TEST_CASE("a camera placed by eye and target stands there and looks there") {
+  render::ViewParameters view;
+  view.eye = sim::Vec3(3, -9, 4);
+  view.target = sim::Vec3(1.5, 0, 0);
+  const auto states = pair_at_rest();
+  const render::Framing framing = render::frame_trajectory(states, view);
+  const render::Camera camera = render::make_camera(framing, framing.moment(states[0]));
+  CHECK(glm::distance(camera.eye, {3, -9, 4}) < 1e-9);
+  CHECK(projected(camera, {1.5, 0, 0}).x == Approx(0).margin(1e-5));
+  CHECK(projected(camera, {1.5, 0, 1}).y > 0);
+  CHECK_NOTHROW(render::check_framing(framing, states));
+}
+
+TEST_CASE("views that show nothing, and eyes inside a vesicle, are told in a sentence") {
+  const auto states = pair_at_rest();
+  const auto complaint = [&](const sim::Vec3& eye, const sim::Vec3& target) {
+    render::ViewParameters view;
+    view.eye = eye;
+    view.target = target;
+    return support::message_of([&] { render::check_framing(render::frame_trajectory(states, view), states); });
+  };
+  CHECK_THAT(complaint({0, -20, 0}, {0, -40, 0}), Catch::Contains("shows nothing"));
+  CHECK_THAT(complaint({1.6, 0.2, 0}, {0, 0, 0}), Catch::Contains("inside vesicle 1"));
+  CHECK_THAT(complaint({1, 2, 0}, {1, 2, 0}), Catch::Contains("same point"));
+  CHECK_THAT(complaint({0, 0, 9}, {0, 0, 0}), Catch::Contains("view.up"));
+}
+
+TEST_CASE("panels divide a picture evenly") {
+  CHECK(render::panel_columns(1, 1920, 1080) == 1);
+  CHECK(render::panel_columns(2, 1920, 1080) == 2);
+  CHECK(render::panel_columns(4, 1920, 1080) == 2);
+  CHECK(render::panel_columns(2, 1080, 1920) == 1);
+}

@@ -2,6 +2,7 @@
 #include "render/context.h"
 #include "render/context_back_ends.h"
 #include "render/draw.h"
+#include "render/style.h"
 
 #include "surfaces.h"
 #include "tests/support/temporary_folder.h"
@@ -25,10 +26,10 @@ std::optional<render::Renderer>& opened(std::optional<render::Renderer>& slot, c
 render::Frame scene() {
   render::ViewParameters view;
   view.size = {320, 200};
-  return surfaces::frame_of(
-      surfaces::state_of({surfaces::disc(surfaces::turn(50, {1, 1, 0}), {-1.4, 0, 0}),
-                          surfaces::ellipsoid({1.3, 0.8, 0.8}, surfaces::turn(-25, {0, 1, 0}), {1.4, 0, 0})}),
-      view);
+  const sim::State state = surfaces::state_of(
+      {surfaces::disc(surfaces::turn(50, {1, 1, 0}), {-1.4, 0, 0}),
+       surfaces::ellipsoid({1.3, 0.8, 0.8}, surfaces::turn(-25, {0, 1, 0}), {1.4, 0, 0})});
+  return surfaces::painted(surfaces::frame_of(state, view), state);
 }
 
 }  // namespace
@@ -63,10 +64,14 @@ TEST_CASE("OSMesa and EGL draw the same pixels") {
     WARN("only one software back end here: nothing to compare");
     return;
   }
-  const render::Frame frame = scene();
-  const render::Image a = render::draw_frame(*osmesa, frame), b = render::draw_frame(*egl, frame);
-  CHECK(a == b);
-  CHECK(render::draw_frame(*osmesa, frame) == a);  // and each still draws in its own context
+  for (const render::StyleRow& style : render::styles()) {
+    INFO(style.name);
+    render::Frame frame = scene();
+    frame.view.style = style.name;
+    const render::Image a = render::draw_frame(*osmesa, frame), b = render::draw_frame(*egl, frame);
+    CHECK(a == b);
+    CHECK(render::draw_frame(*osmesa, frame) == a);  // and each still draws in its own context
+  }
 }
 
 TEST_CASE("two renderers and two runs of one renderer give the same bytes") {

@@ -67,6 +67,35 @@ TEST_CASE("a prolate in the checker style looks as it did") {
                surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}))}), view));
 }
 
+TEST_CASE("the pair in the ghost style looks as it did") {
+  render::ViewParameters view = small_view();
+  view.style = "ghost";
+  view.camera = "three-quarter";
+  check_golden("pair_ghost", surfaces::frame_of(pair(), view));
+}
+
+TEST_CASE("ghosts one behind the other look as they did") {
+  render::ViewParameters view = small_view();
+  view.style = "ghost";
+  view.background = "white";
+  const sim::State state = surfaces::state_of({surfaces::disc(turn(-35, {0, 1, 0}) * turn(50, {1, 0, 0}), {-0.5, 0.8, 0.2}),
+                                               surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}), {0.4, -0.9, 0})});
+  check_golden("ghosts_in_depth", surfaces::frame_of(state, view));
+}
+
+TEST_CASE("the pair in the field style looks as it did") {
+  render::ViewParameters view = small_view();
+  view.style = "field";
+  check_golden("pair_field", surfaces::painted(surfaces::frame_of(pair(), view), pair()));
+}
+
+TEST_CASE("the pair in the cutaway style looks as it did") {
+  render::ViewParameters view = small_view();
+  view.style = "cutaway";
+  view.camera = "three-quarter";
+  check_golden("pair_cutaway", surfaces::painted(surfaces::frame_of(pair(), view), pair()));
+}
+
 TEST_CASE("the pair in the outline style on white looks as it did") {
   render::ViewParameters view = small_view();
   view.style = "outline";

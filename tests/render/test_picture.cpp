@@ -338,6 +338,33 @@ TEST_CASE("ghosts of full opacity are the opaque picture: triangles are drawn in
   }
 }
 
+TEST_CASE("a cut shows the inside, its rim lies on the plane, and nothing of the near half is left") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(480, 480);
+  view.style = "cutaway";
+  view.outline_width = 2;
+  const sim::State state = surfaces::state_of({surfaces::sphere()});
+  const render::Frame frame = surfaces::painted(surfaces::frame_of(state, view), state);
+  REQUIRE(frame.bodies[0].cut->edges.size() == 1);
+  for (const glm::dvec3& p : frame.bodies[0].cut->edges[0]) {
+    CHECK(p.y == Approx(0).margin(1e-9));
+    CHECK(glm::length(p) == Approx(1).margin(1e-9));
+  }
+  const Image cut = render::draw_frame(renderer, frame);
+  const double px = 240 / frame.camera.half_width;
+  // The bowl is seen from inside: light from above falls on its lower part.
+  const auto at = [&](double x, double z) { return brightness(cut.at(static_cast<int>(240 + x * px), static_cast<int>(240 - z * px))); };
+  CHECK(at(0, -0.6) > at(0, 0.6) + 0.05);
+  const Silhouette s = silhouette(cut, frame.camera);
+  CHECK(std::sqrt(s.area / std::numbers::pi) * px == Approx(px + 4).margin(2.5));  // a disc, and half the rim's width
+  // Seen along the plane, the far half stands alone.
+  render::Frame aside = frame;
+  aside.view.camera = "gradient-vorticity";
+  const render::StateSummary summary = render::summarize(state);
+  aside.camera = render::make_camera(render::frame_trajectory(std::span(&summary, 1), aside.view), summary.centroid);
+  CHECK(silhouette(render::draw_frame(renderer, aside), aside.camera).area == Approx(std::numbers::pi / 2).epsilon(0.05));
+}
+
 TEST_CASE("captions are drawn where asked for and leave the rest alone") {
   render::Renderer renderer = software();
   render::ViewParameters view = surfaces::bare_view(480, 270);
