@@ -1,0 +1,194 @@
+#include "velocity.h"
+
+#include "dealias.h"
+#include "geometry.h"
+#include "parallel.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+FlowSource::Level level(Plans& plans, const FlowSource& source, int order) {
+  const Basis& basis = plans.basis(source.position.order, order);
+  const Geometry g = geometry(basis, source.position);
+  FlowSource::Level l;
+  l.sources.points = g.x.value;
+  l.sources.area = g.dA;
+  l.sources.normals = g.n.array().colwise() * g.dA.array();
+  const Vector along_t = g.E.cwiseSqrt(), along_f = g.G.cwiseSqrt().cwiseQuotient(basis.sin_theta());
+  l.sources.spacing = pi / basis.latitudes() * along_t.cwiseMax(along_f);
+  l.sources.low = g.x.value.colwise().minCoeff().transpose();
+  l.sources.high = g.x.value.colwise().maxCoeff().transpose();
+  l.force = basis.synthesize(source.densities.force).values;
+  if (source.viscosity_contrast != 1) l.dual = basis.synthesize(source.densities.dual).values;
+  l.directions.resize(basis.points(), 3);
+  for (Eigen::Index k = 0; k < basis.points(); ++k) {
+    const double t = basis.theta()[k % basis.latitudes()], f = basis.phi()[k / basis.latitudes()];
+    l.directions.row(k) << std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t);
+  }
+  return l;
+}
+
+/// Nearest source point and its distance.
+std::pair<Eigen::Index, double> nearest_source(const Sources& s, const Vec3& x) {
+  Eigen::Index k = 0;
+  const double square = ((s.points.col(0).array() - x[0]).square() + (s.points.col(1).array() - x[1]).square() +
+                         (s.points.col(2).array() - x[2]).square())
+                            .minCoeff(&k);
+  return {k, std::sqrt(square)};
+}
+
+/// Solid angle over 4 pi, by the smooth rule: right to rounding where that rule is.
+bool holds(const Sources& s, const Vec3& x) {
+  if ((x - s.low).minCoeff() < 0 || (s.high - x).minCoeff() < 0) return false;
+  double sum = 0;
+  for (Eigen::Index k = 0; k < s.points.rows(); ++k) {
+    const Vec3 r = s.points.row(k).transpose() - x;
+    const double square = r.squaredNorm();
+    sum += s.normals.row(k).dot(r) / (square * std::sqrt(square));
+  }
+  return sum > 2 * pi;
+}
+
+/// What one membrane contributes at one point.
+struct Contribution {
+  Vec3 velocity = Vec3::Zero();
+  double distance = std::numeric_limits<double>::infinity();
+  bool within = false;
+  bool on_membrane = false;  ///< velocity is then the membrane's own
+};
+
+Contribution near_contribution(const FlowSource& source, const Vec3& x, const FlowFieldOptions& options) {
+  Contribution c;
+  const FlowSource::Level& finest = source.levels.back();
+  const Eigen::Index start = nearest_source(finest.sources, x).first;
+  const NearestPoint nearest = nearest_point(source.position, x, finest.directions.row(start).transpose());
+  c.distance = nearest.distance;
+  c.within = nearest.inside;
+  constexpr double touching = 1e-7;  // of the vesicle's size: nearer, the velocity is the membrane's to all digits wanted
+  if (nearest.distance < touching * (finest.sources.high - finest.sources.low).norm()) {
+    c.on_membrane = true;
+    c.velocity = sample_points(source.velocity, nearest.parameter.transpose()).row(0).transpose();
+    return c;
+  }
+  const PointRow row = near_row(*source.rotation, source.position, x, nearest, options.near_order);
+  c.velocity = apply_row(row.single, source.densities.force.values);
+  if (source.viscosity_contrast != 1) c.velocity += apply_row(row.dual, source.densities.dual.values);
+  return c;
+}
+
+/// Contributions of one membrane at all points: those that see it on one grid are summed together.
+std::vector<Contribution> contributions(const FlowSource& source, const Matrix& points, const FlowFieldOptions& options) {
+  std::vector<Contribution> all(points.rows());
+  std::array<std::vector<Eigen::Index>, 3> lists;
+  for (Eigen::Index k = 0; k < points.rows(); ++k) {
+    const Vec3 x = points.row(k).transpose();
+    bool far = false;
+    for (std::size_t l = 0; l < source.levels.size() && !far; ++l) {
+      const Sources& s = source.levels[l].sources;
+      const auto [at, away] = nearest_source(s, x);
+      // Between source points the membrane may come nearer by less than the sagitta of a spacing; half of one is plenty.
+      const double distance = away - 0.5 * s.spacing[at];
+      if (distance < options.spacings * s.spacing[at]) continue;
+      far = true;
+      lists[l].push_back(k);
+      all[k].distance = distance;
+      all[k].within = holds(s, x);
+    }
+    if (!far) all[k] = near_contribution(source, x, options);
+  }
+  for (std::size_t l = 0; l < lists.size(); ++l) {
+    if (lists[l].empty()) continue;
+    const FlowSource::Level& level = source.levels[l];
+    Matrix sum = Matrix::Zero(Eigen::Index(lists[l].size()), 3);
+    add_direct_sum(level.sources, level.force, level.dual.size() ? &level.dual : nullptr, points(lists[l], Eigen::all), sum);
+    for (std::size_t k = 0; k < lists[l].size(); ++k) all[lists[l][k]].velocity = sum.row(Eigen::Index(k)).transpose();
+  }
+  return all;
+}
+
+}  // namespace
+
+FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const FlowFieldOptions& options) {
+  const int n = int(state.vesicles.size());
+  const NumericsParameters& numerics = scene.numerics;
+  FlowField field{scene.flows, state.time, std::vector<FlowSource>(n), options};
+  std::vector<Material> materials;
+  std::vector<Coefficients> positions;
+  for (int i = 0; i < n; ++i) {
+    const VesicleParameters& v = scene.vesicles[i];
+    materials.push_back({v.viscosity_contrast, v.bending_modulus, v.density_difference});
+    positions.push_back(state.vesicles[i].position);
+  }
+  std::vector<Coefficients> repelled;
+  if (n > 1 && numerics.repulsion_strength > 0) {
+    const InteractionOptions interaction{numerics.interaction_order, true, {numerics.near_latitudes, numerics.near_longitudes}};
+    repelled = repulsion(plan_interaction(plans, positions, materials, interaction), numerics.repulsion_strength,
+                         numerics.repulsion_range);
+  }
+  for (int i = 0; i < n; ++i) {  // the threads share the work inside
+    const VesicleState& v = state.vesicles[i];
+    const int p = v.position.order;
+    const int rate = numerics.upsampling > 0 ? numerics.upsampling
+                                             : upsampling_rate(plans, v.position, numerics.aliasing_tolerance);
+    const Membrane m = freeze_membrane(plans, materials[i], v.position, rate, numerics.source_order);
+    FlowSource& source = field.sources[i];
+    source.position = v.position;
+    source.velocity = v.velocity;
+    source.viscosity_contrast = materials[i].viscosity_contrast;
+    source.densities.force = known_force(m, scene.buoyancy.gravity, v.position);
+    source.densities.force.values += implicit_force(m, 0, {v.velocity, v.tension}).values;
+    if (!repelled.empty()) source.densities.force.values += repelled[i].values;
+    source.densities.dual = {p, (1 - source.viscosity_contrast) * v.velocity.values};
+    source.rotation = &plans.rotation(p);
+    const int coarse = std::max(2 * p, 24);
+    parallel_for(int(source.levels.size()), [&](int k) { source.levels[k] = level(plans, source, coarse << k); });
+  }
+  return field;
+}
+
+FlowSamples velocity_at(const FlowField& field, const Matrix& points) {
+  const int count = int(points.rows());
+  FlowSamples samples{background_velocity(field.flows, field.time, points), std::vector<int>(count, -1),
+                      Vector::Constant(count, std::numeric_limits<double>::infinity())};
+  constexpr int block = 64;
+  parallel_for((count + block - 1) / block, [&](int b) {
+    const int first = b * block, size = std::min(count - first, block);
+    const Matrix here = points.middleRows(first, size);
+    Matrix u = samples.velocity.middleRows(first, size);
+    Vector contrast = Vector::Ones(size);
+    std::vector<std::pair<int, Vec3>> touching;
+    for (std::size_t j = 0; j < field.sources.size(); ++j) {
+      const std::vector<Contribution> all = contributions(field.sources[j], here, field.options);
+      for (int k = 0; k < size; ++k) {
+        if (all[k].on_membrane) touching.push_back({k, all[k].velocity});
+        u.row(k) += all[k].velocity.transpose();
+        samples.distance[first + k] = std::min(samples.distance[first + k], all[k].distance);
+        if (!all[k].within) continue;
+        samples.within[first + k] = int(j);
+        contrast[k] = field.sources[j].viscosity_contrast;
+      }
+    }
+    u.array().colwise() /= contrast.array();
+    for (const auto& [k, own] : touching) u.row(k) = own.transpose();
+    samples.velocity.middleRows(first, size) = u;
+  });
+  return samples;
+}
+
+Vec3 centroid_velocity(Plans& plans, const VesicleState& v) {
+  const Basis& basis = plans.basis(v.position.order, 2 * v.position.order + 8);
+  const Geometry g = geometry(basis, v.position);
+  const Vector outflow = basis.synthesize(v.velocity).values.cwiseProduct(g.n).rowwise().sum().cwiseProduct(g.dA);
+  const Measures whole = measures(g);
+  // The membrane keeps its volume up to the truncation error: what is left over must not act at a distance.
+  return (g.x.value.rowwise() - whole.centroid.transpose()).transpose() * outflow / whole.volume;
+}
+
+}  // namespace sim

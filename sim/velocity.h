@@ -1,0 +1,56 @@
+// The velocity of the fluid anywhere, outside and inside of the membranes, from a saved state.
+//
+// With the force densities f_j of all membranes on the fluid and their velocities u_j, from the representation formula:
+//   c u(x) = u_inf(x) + sum_j { S_j[f_j](x) + (1 - lambda_j) D_j[u_j](x) },   c = 1 outside, lambda_k inside of vesicle k
+// (D with the sign of layer_potentials.h: of a rigid motion it makes -(1 - lambda) inside, 0 outside). Both sides meet the
+// membrane's own velocity. Far from a membrane the smooth rule serves, on the coarsest of three source grids that is fine
+// enough; nearer than some spacings of the finest grid the near-singular rule of near.h.
+#pragma once
+
+#include "interaction.h"
+
+#include <array>
+
+namespace sim {
+
+struct FlowFieldOptions {
+  double spacings = 4;           ///< the smooth rule keeps so many local source spacings away; its error falls as e^(-2 pi n)
+  NearOrder near_order{48, 64};
+};
+
+/// One membrane as a source of flow, frozen at a state.
+struct FlowSource {
+  struct Level {
+    Sources sources;
+    Matrix force, dual;  ///< samples at the sources; dual: (1 - lambda) u, empty for lambda = 1
+    Matrix directions;   ///< parameters of the sources, unit vectors
+  };
+  Coefficients position, velocity;
+  Densities densities;
+  double viscosity_contrast = 1;
+  std::array<Level, 3> levels;  ///< from coarse to fine, each spacing half of the one before
+  const RotationPlan* rotation = nullptr;
+};
+
+/// Everything that the velocity at a point depends on; values at one instant.
+struct FlowField {
+  std::vector<FlowParameters> flows;
+  double time = 0;
+  std::vector<FlowSource> sources;
+  FlowFieldOptions options;
+};
+/// Forces are computed as the stepper does: bending, tension, buoyancy and repulsion of the scene.
+FlowField flow_field(Plans&, const Scene&, const State&, const FlowFieldOptions& = {});
+
+struct FlowSamples {
+  Matrix velocity;          ///< count x 3
+  std::vector<int> within;  ///< number of the vesicle that holds the point, -1 outside of all
+  Vector distance;          ///< to the nearest membrane; a lower bound where it is farther than the near rule's reach
+};
+/// At points, count x 3. The result does not depend on the number of threads.
+FlowSamples velocity_at(const FlowField&, const Matrix& points);
+
+/// Velocity of the volume centroid: 1/V oint x (u.n) dA.
+Vec3 centroid_velocity(Plans&, const VesicleState&);
+
+}  // namespace sim
