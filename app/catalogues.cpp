@@ -1,11 +1,13 @@
 #include "catalogues.h"
 
 #include "movie_formats.h"
+#include "quantities.h"
 
 #include "render/camera.h"
 #include "render/colormap.h"
 #include "render/figure.h"
 #include "render/style.h"
+#include "render/theme.h"
 #include "sim/fields.h"
 #include "sim/flows.h"
 #include "sim/placements.h"
@@ -40,7 +42,9 @@ const std::vector<Catalogue>& catalogues() {
       {"colour_maps", "colours of a field", words(render::colour_maps())},
       {"colours", "colours of vesicles, in the order in which they are given out", words(render::body_colours())},
       {"formats", "movie files", words(movie_formats())},
-      {"figures", "figures drawn from a trajectory", words(render::figures())}};
+      {"figures", "figures drawn from a trajectory", words(render::figures())},
+      {"themes", "looks of a figure", words(render::themes())},
+      {"quantities", "what figures show against time and in phase portraits", words(quantities())}};
   return all;
 }
 

@@ -48,6 +48,25 @@ void parse_size(Options& options, const std::string& text) {
   options.set.push_back(fmt::format("view.size=[{}, {}]", width, height));
 }
 
+/// "180mm", "180x120mm", "1200x800px".
+void parse_figure_size(Options& options, const std::string& text) {
+  const std::string unit = text.size() > 2 ? text.substr(text.size() - 2) : "";
+  const std::string numbers = text.substr(0, text.size() - unit.size());
+  const std::size_t cross = numbers.find('x');
+  double width = 0, height = 0;
+  const auto read = [](std::string_view word, double& value) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size() && value > 0;
+  };
+  const bool known = unit == "mm" || unit == "px";
+  if (!known || !read(std::string_view(numbers).substr(0, cross), width) ||
+      (cross != std::string::npos && !read(std::string_view(numbers).substr(cross + 1), height)))
+    throw CLI::ValidationError("--size", fmt::format("'{}' is no size of a figure, such as 180mm, 180x120mm or 1200x800px", text));
+  options.set.push_back(cross == std::string::npos ? fmt::format("figure.size=[{}]", width)
+                                                   : fmt::format("figure.size=[{}, {}]", width, height));
+  options.set.push_back("figure.unit=" + unit);
+}
+
 constexpr OptionRow option_rows[] = {
     {"output", [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "where the results go"); }},
     {"jobs",
@@ -105,6 +124,25 @@ constexpr OptionRow option_rows[] = {
     {"time",
      [](CLI::App& app, Options& o) {
        app.add_option("--time", o.time, "one still of this time instead of a movie; -o names the PNG file");
+     }},
+    {"figure-size",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<std::string>("--size", [&o](const std::string& text) { parse_figure_size(o, text); },
+                                            "of the page: 180mm, 180x120mm or 1200x800px")
+           ->type_name("SIZE");
+     }},
+    {"theme",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<std::string>("--theme", [&o](const std::string& s) { o.set.push_back("figure.theme=" + s); },
+                                            "short for --set figure.theme=NAME: paper, slides, ...")
+           ->type_name("NAME");
+     }},
+    {"font-size",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<double>("--font-size",
+                                       [&o](double s) { o.set.push_back(fmt::format("figure.font_size={}", s)); },
+                                       "of numbers and legends, points")
+           ->type_name("PT");
      }},
     {"csv",
      [](CLI::App& app, Options& o) {

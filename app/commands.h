@@ -36,15 +36,15 @@ inline constexpr Command commands[] = {
      "output jobs set steps dry-run quiet resume force", simulate},
     {"render", "the pictures alone: draws a trajectory again with another view or style; several side by side", "", "TRAJECTORY", true,
      "output jobs set quiet gl shader-dir shard style size format time", render},
-    {"figure", "a figure as PNG, SVG and PDF, with its numbers as CSV", "NAME", "TRAJECTORY", true, "output set quiet",
-     figure},
+    {"figure", "a figure as PNG, SVG and PDF, with its numbers as CSV", "NAME", "TRAJECTORY", true,
+     "output set quiet gl shader-dir figure-size theme font-size", figure},
     {"info", "what a trajectory, a scene or a frame holds", "", "FILE", false, "set", info},
     {"export", "a table of measures: one row per saved state and vesicle", "", "TRAJECTORY", false, "csv", export_table},
     {"compare", "pictures against expected ones, a pair of files or of folders: status 0 same, 1 different, 2 neither",
      "EXPECTED", "ACTUAL", false, "thresholds ignore json junit html diff update quiet", compare},
     {"reproduce", "recomputes a table or figure of the method's paper; without ITEM, tells which", "ITEM", "", false,
      "output quiet gl quick full", reproduce},
-    {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, parameters", "KIND", "", false, "markdown",
+    {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, themes, quantities, parameters", "KIND", "", false, "markdown",
      list},
 };
 

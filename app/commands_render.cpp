@@ -91,12 +91,12 @@ int figure(const Options& options) {
   std::vector<std::vector<FigureSource>> sets;
   for (std::size_t k = 0; k < trajectories.size(); ++k) {
     const std::string name = trajectories.size() > 1 ? settings[k].scene.title : std::string();
-    if (sets.empty() || options.word != "time-series") sets.emplace_back();
+    if (sets.empty() || !takes_several(options.word)) sets.emplace_back();
     sets.back().push_back({trajectories[k], settings[k], name});
   }
   for (std::size_t k = 0; k < sets.size(); ++k) {
     const fs::path file = sets.size() == 1 ? stem : fs::path(fmt::format("{}-{}", stem.string(), k));
-    for (const fs::path& written : draw_figure(sets[k], sets[k].front().settings.figures.front(), file))
+    for (const fs::path& written : draw_figure(sets[k], sets[k].front().settings.figures.front(), file, options))
       if (!options.quiet) fmt::print("{}\n", written.string());
   }
   return 0;

@@ -102,7 +102,7 @@ int run(const Options& options) {
     fmt::print(stderr, "tanktread: {}; the frames are in '{}'\n", frames.remark, (folder / "frames").string());
   for (const render::FigureParameters& figure : settings.figures) {
     const fs::path stem = folder / (figure.out.empty() ? figure.kind : figure.out);
-    for (const fs::path& file : draw_figure({{reader, settings, {}}}, figure, stem)) say(options, file.string());
+    for (const fs::path& file : draw_figure({{reader, settings, {}}}, figure, stem, options)) say(options, file.string());
   }
   return frames.movie_failed ? 1 : status;
 }

@@ -1,8 +1,11 @@
-// Figures of trajectories: gathers the states and measures that a kind of figure asks for and writes its four files.
+// Figures of trajectories: gathers the states, measures, pictures or flows that a kind of figure asks for and writes its
+// four files.
 #pragma once
 
+#include "options.h"
 #include "settings.h"
 
+#include "render/figure.h"
 #include "sim/trajectory.h"
 
 #include <filesystem>
@@ -16,8 +19,14 @@ struct FigureSource {
   std::string name;  ///< in the legend when there are several; else empty
 };
 
-/// Writes stem.png, .svg, .pdf and .csv and returns their paths. Kinds that show states take the first source only.
+/// Curves of several trajectories share a figure of this kind; pictures of states get one each.
+bool takes_several(std::string_view kind);
+
+/// Kinds that show states take the first source only.
+render::Figure make_figure(const std::vector<FigureSource>&, const render::FigureParameters&, const Options&);
+
+/// Writes stem.png, .svg, .pdf and .csv and returns their paths.
 std::vector<std::filesystem::path> draw_figure(const std::vector<FigureSource>&, const render::FigureParameters&,
-                                               const std::filesystem::path& stem);
+                                               const std::filesystem::path& stem, const Options&);
 
 }  // namespace app

@@ -1,7 +1,7 @@
 // Figures 2 and 3: aliasing, and the spectra that make it matter.
 #include "reproduce_items.h"
-#include "reproduce_plot.h"
 
+#include "render/plot.h"
 #include "render/section.h"
 #include "sim/dealias.h"
 #include "sim/legendre.h"
@@ -81,21 +81,23 @@ Report reproduce_aliasing(const Effort&) {
   for (std::size_t k = 0; k < fine.size(); ++k)
     figure.csv += fmt::format("{:.10g},{:.10g},{:.10g},{:.10g}\n", fine[k], low[k], aliases[0].values[k], aliases[1].values[k]);
   figure.drawing = {510, 236, [=](cairo_t* cairo, const render::Font& font) {
+                      const render::Theme theme = render::find_theme("paper");
+                      const render::Pen pen{cairo, font, theme};
                       for (std::size_t k = 0; k < aliases.size(); ++k) {
                         const render::Panel panel{{-1, 1}, {-2.6, 2.6}, 50 + 232 * static_cast<double>(k), 30, 216, 160};
-                        render::draw_polyline(cairo, panel, fine, aliases[k].values, {{0.62, 0.66, 0.72}, 0.9, 1});
-                        render::draw_polyline(cairo, panel, fine, low, {render::curve_colour(0), 1.8, 1});
-                        draw_dots(cairo, panel, at, low_at, render::curve_colour(1), 3.2);
-                        render::AxisLabels labels;
-                        labels.x = "z";
-                        labels.x_ticks = 4;
-                        labels.y_numbers = k == 0;
-                        render::draw_axes(cairo, font, panel, labels);
-                        cairo_set_source_rgb(cairo, 0.1, 0.1, 0.12);
-                        render::draw_text(cairo, font, render::label_text, panel.left, 22, k == 0 ? "(a)" : "(b)");
-                        render::draw_legend_line(cairo, font, panel.left + panel.width, 22,
-                                                 {"P_{4}^{1}", fmt::format("P_{{{}}}^{{{}}}", aliases[k].n, aliases[k].m)},
-                                                 {render::curve_colour(0), {0.62, 0.66, 0.72}});
+                        constexpr render::Colour grey{0.62, 0.66, 0.72};
+                        render::draw_polyline(pen, panel, fine, aliases[k].values, {grey, 0.6});
+                        render::draw_polyline(pen, panel, fine, low, {render::curve_colour(0), 1.15});
+                        render::draw_markers(pen, panel, at, low_at, render::Marker::dot, render::curve_colour(1), 2);
+                        render::Axes axes;
+                        axes.x.label = "z";
+                        axes.y.numbers = k == 0;
+                        render::draw_axes(pen, panel, axes);
+                        render::draw_title(pen, panel, k == 0 ? "(a)" : "(b)");
+                        render::draw_legend_line(
+                            pen, panel.left + panel.width, 23,
+                            {{"P_{4}^{1}", render::curve_colour(0), {}, false},
+                             {fmt::format("P_{{{}}}^{{{}}}", aliases[k].n, aliases[k].m), grey, {}, false}});
                       }
                     }};
   report.figure = std::move(figure);
@@ -157,7 +159,9 @@ Report reproduce_spectra(const Effort& effort) {
   for (double& v : all) v = std::max(v, 1e-12);
   const auto curves = render::cut(x, {.origin = render::CutPlane().origin});
   figure.drawing = {400, 300, [=](cairo_t* cairo, const render::Font& font) {
-                      const render::Panel panel{{0, static_cast<double>(q)}, decades(all), 66, 16, 318, 232};
+                      const render::Theme theme = render::find_theme("paper");
+                      const render::Pen pen{cairo, font, theme};
+                      const render::Panel panel{{0, static_cast<double>(q)}, render::decades(all), 66, 16, 318, 232};
                       const auto show = [&](const std::vector<double>& values, std::size_t c) {
                         std::vector<double> n, y;
                         for (std::size_t k = 0; k < values.size(); ++k)
@@ -165,24 +169,26 @@ Report reproduce_spectra(const Effort& effort) {
                             n.push_back(degrees[k]);
                             y.push_back(std::log10(values[k]));
                           }
-                        render::draw_polyline(cairo, panel, n, y, {render::curve_colour(c), 1.2, 1});
-                        draw_dots(cairo, panel, n, y, render::curve_colour(c), 2);
+                        render::draw_polyline(pen, panel, n, y, {render::curve_colour(c), 0.75});
+                        render::draw_markers(pen, panel, n, y, render::Marker::dot, render::curve_colour(c), 1.25);
                       };
                       show(of_h, 1);
                       show(of_x, 0);
-                      render::AxisLabels labels;
-                      labels.x = "degree n";
-                      labels.y = "E_{n}";
-                      labels.x_ticks = 8;
-                      draw_log_axes(cairo, font, panel, labels, false, true);
+                      render::Axes axes;
+                      axes.x.label = "degree n";
+                      axes.y.label = "E_{n}";
+                      axes.y.scale = render::Scale::logarithmic;
+                      render::draw_axes(pen, panel, axes);
                       // The section of the shape, in the upper right.
                       render::Panel inset{{-1.7, 1.7}, {-1.7, 1.7}, panel.left + panel.width - 92, panel.top + 8, 84, 84};
                       for (const render::ClosedCurve& curve : curves) {
                         const Eigen::Vector2d middle = 0.5 * (curve.points.colwise().maxCoeff() + curve.points.colwise().minCoeff()).transpose();
-                        render::draw_closed_curve(cairo, inset, curve, -middle, {{0.25, 0.28, 0.33}, 1.2, 1}, 0.12);
+                        render::draw_closed_curve(pen, inset, curve, -middle, {{0.25, 0.28, 0.33}, 0.75}, 0.12);
                       }
-                      render::draw_legend(cairo, font, panel, {"position x", "mean curvature H"},
-                                          {render::curve_colour(0), render::curve_colour(1)}, render::Corner::lower_left);
+                      render::draw_legend(pen, panel,
+                                          {{"position x", render::curve_colour(0), {}, false},
+                                           {"mean curvature H", render::curve_colour(1), {}, false}},
+                                          render::Corner::lower_left);
                     }};
   TextTable excerpt{"Every eighth degree.", table.columns, {}};
   for (std::size_t n = 0; n < table.rows.size(); n += 8) excerpt.rows.push_back(table.rows[n]);

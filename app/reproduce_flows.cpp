@@ -1,14 +1,11 @@
 // Figures 4 and 6: whole simulations, whose scenes and trajectories are left beside the figures.
 #include "figures.h"
-#include "frames.h"
 #include "output.h"
 #include "reproduce_items.h"
-#include "reproduce_plot.h"
 #include "scene_file.h"
 #include "scene_text.h"
 #include "simulation.h"
 
-#include "render/camera.h"
 #include "sim/diagnostics.h"
 #include "sim/trajectory.h"
 
@@ -16,7 +13,6 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 
 namespace app {
 
@@ -110,14 +106,12 @@ Report reproduce_poiseuille(const Effort& effort) {
   report.tables.push_back(table);
 
   const sim::TrajectoryReader trajectory = open_trajectory("fig4", effort);
-  render::FigureInput input;
-  std::vector<double> state_times;
-  for (std::int64_t k = 0; k < trajectory.count(); ++k) state_times.push_back(trajectory.time(k));
   render::FigureParameters wanted;
+  wanted.kind = "cross-sections";
+  wanted.window = "own";
+  wanted.columns = effort.quick ? 0 : 7;
   for (const int step : {0, 100, 200, 300, 400, 600, 800}) wanted.times.push_back(step * unit);
-  for (const std::size_t k : render::chosen_states(state_times, wanted))
-    input.states.push_back(trajectory.state(static_cast<std::int64_t>(k)));
-  report.figure = render::find_figure("cross-sections").draw(input);
+  report.figure = make_figure({{trajectory, settings, {}}}, wanted, effort.options);
   report.picture_text = "Sections with the plane y = 0, at steps 0, 100, 200, 300, 400, 600 and 800, seen by an observer who moves "
                         "with the fluid on the axis of the tube: the vesicle falls behind.";
   return report;
@@ -151,23 +145,16 @@ Report reproduce_two_vesicles(const Effort& effort) {
   }
   TextTable table{"The instants shown; x, z: centre of the first vesicle, the second is its mirror image to rounding errors.",
                   {"", "step", "χt", "x / R_0", "z / R_0", "inclination (°)"}, {}};
-  struct Panel {
-    Still still;
-    std::string label;
-    double half_width;
-  };
-  std::vector<Panel> panels;
-  constexpr double half_height = 1.9, margin = 0.35;
+  render::FigureParameters wanted;
+  wanted.kind = "snapshots";
+  wanted.dots_per_inch = 300;
   for (std::size_t k = 0; k < steps.size() && steps[k] <= last; ++k) {
     const sim::State state = trajectory.state(steps[k]);
     const std::vector<sim::VesicleMeasures> all = measures_of(plans, state);
     const std::string letter = fmt::format("({})", static_cast<char>('a' + k));
     table.rows.push_back({letter, std::to_string(steps[k]), fmt::format("{:.2f}", state.time), fmt::format("{:.4f}", all[0].center[0]),
                           fmt::format("{:.4f}", all[0].center[2]), fmt::format("{:.1f}", all[0].inclination_deg)});
-    double reach = 0;
-    for (const auto& point : render::summarize(state).points) reach = std::max(reach, std::abs(double(point.x)));
-    panels.push_back({{state.time, sim::Vec3::Zero(), half_height, 0, 0},
-                      fmt::format("{}  χt = {:.2f}", letter, state.time), reach + margin});
+    wanted.times.push_back(state.time);
   }
   report.tables.push_back(table);
   report.findings = {
@@ -176,60 +163,8 @@ Report reproduce_two_vesicles(const Effort& effort) {
                   end_of(run), last, record.retries, record.gap, scientific(record.area_error), scientific(record.volume_error)),
       "The paper shows no numbers for this figure: compare the sequence, kiss, roll over, part, tumble."};
 
-  // Rows of panels at one common scale; what is left over of a row's width widens its panels.
-  const std::vector<std::size_t> row_ends = effort.quick ? std::vector<std::size_t>{panels.size()}
-                                                         : std::vector<std::size_t>{3, 5, 7, 8};
-  constexpr double page = 510, gap = 8, title = 17, dots = 300.0 / 72;
-  double widest = 0;
-  for (std::size_t r = 0, k = 0; r < row_ends.size(); ++r) {
-    double sum = 0;
-    for (; k < std::min(row_ends[r], panels.size()); ++k) sum += 2 * panels[k].half_width;
-    widest = std::max(widest, sum);
-  }
-  const double scale = (page - 2 * gap) / widest;  // points per length
-  const double height = 2 * half_height * scale;
-  struct Place {
-    double left, top, width;
-  };
-  std::vector<Place> places;
-  for (std::size_t r = 0, k = 0; r < row_ends.size(); ++r) {
-    const std::size_t end = std::min(row_ends[r], panels.size());
-    if (k >= end) break;
-    double sum = 0;
-    for (std::size_t i = k; i < end; ++i) sum += 2 * panels[i].half_width * scale;
-    const double count = static_cast<double>(end - k), extra = (page - gap * (count - 1) - sum) / count;
-    double left = 0;
-    for (; k < end; ++k) {
-      const double width = 2 * panels[k].half_width * scale + extra;
-      places.push_back({left, static_cast<double>(r) * (height + title + 4), width});
-      left += width + gap;
-      panels[k].still.width = std::max(16, static_cast<int>(std::lround(width * dots)));
-      panels[k].still.height = std::max(16, static_cast<int>(std::lround(height * dots)));
-    }
-  }
-  std::vector<Still> stills;
-  for (const Panel& panel : panels) stills.push_back(panel.still);
-  const auto images = std::make_shared<const std::vector<render::Image>>(draw_stills(trajectory, settings, stills, effort.options));
-  render::Figure figure;
-  figure.csv = csv;
-  figure.drawing = {page, places.back().top + title + height + 4, [=](cairo_t* cairo, const render::Font& font) {
-                      for (std::size_t k = 0; k < places.size(); ++k) {
-                        const Place& p = places[k];
-                        draw_picture(cairo, (*images)[k], p.left, p.top + title, p.width, height);
-                        cairo_set_source_rgb(cairo, 0.70, 0.72, 0.75);
-                        cairo_set_line_width(cairo, 0.6);
-                        cairo_rectangle(cairo, p.left + 0.3, p.top + title, p.width - 0.6, height);
-                        cairo_stroke(cairo);
-                        cairo_set_source_rgb(cairo, 0.10, 0.10, 0.12);
-                        render::draw_text(cairo, font, render::label_text, p.left + 1, p.top + title - 5, panels[k].label);
-                      }
-                      // A bar one R_0 long in the first panel: all panels have one scale.
-                      const double x = places[0].left + 8, y = places[0].top + title + height - 8;
-                      cairo_rectangle(cairo, x, y - 1.6, scale, 1.6);
-                      cairo_fill(cairo);
-                      render::draw_text(cairo, font, render::tick_text, x + scale / 2, y - 5, "R_{0}", render::Align::centre);
-                    }};
-  report.figure = std::move(figure);
+  report.figure = make_figure({{trajectory, settings, {}}}, wanted, effort.options);
+  report.figure->csv = csv;  // every state, not those shown alone
   report.picture_text = "Seen along the vorticity axis, x to the right, z up; all panels at one scale. Dots and lines move with the membrane.";
   return report;
 }

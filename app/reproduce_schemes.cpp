@@ -1,6 +1,6 @@
 // Tables 4 and 5 and Figure 5: how far the time stepping schemes carry, and what they cost.
 #include "reproduce_items.h"
-#include "reproduce_plot.h"
+#include "render/plot.h"
 
 #include "sim/shapes.h"
 #include "sim/stepper.h"
@@ -111,7 +111,8 @@ std::vector<std::string> order_columns(const std::vector<int>& orders, std::vect
 }
 
 /// Two prolates one above the other, the gap between them marked; R_0 is `unit` points.
-void draw_configuration(cairo_t* cairo, const render::Font& font, double x, double y, double unit) {
+void draw_configuration(const render::Pen& pen, double x, double y, double unit) {
+  cairo_t* cairo = pen.cairo;
   const sim::Vec3 axes = unit * sim::spheroid_axes(0.85, true);
   constexpr double half_gap = 6;  // pt
   for (const double side : {-1.0, 1.0}) {
@@ -131,7 +132,7 @@ void draw_configuration(cairo_t* cairo, const render::Font& font, double x, doub
   cairo_move_to(cairo, x, y - half_gap);
   cairo_line_to(cairo, x, y + half_gap);
   cairo_stroke(cairo);
-  render::draw_text(cairo, font, render::tick_text, x + 6, y + 0.36 * render::tick_text, "gap");
+  render::draw_text(cairo, pen.font, pen.theme.text, x + 6, y + 0.36 * pen.theme.text, "gap");
 }
 
 constexpr const char* prolate_text = "One vesicle: prolate, ν = 0.85, area 4π, long axis along x, in the shear flow u = χ z "
@@ -409,22 +410,21 @@ Report reproduce_block_error(const Effort& effort) {
   render::Figure figure;
   figure.csv = csv_text(table);
   figure.drawing = {360, 300, [=](cairo_t* cairo, const render::Font& font) {
-                      const render::Panel panel{decades(gaps), decades(all), 66, 16, 276, 232};
-                      std::vector<std::string> names;
-                      std::vector<render::Colour> colours;
+                      const render::Theme theme = render::find_theme("paper");
+                      const render::Pen pen{cairo, font, theme};
+                      const render::Panel panel{render::decades(gaps), render::decades(all), 66, 16, 276, 232};
+                      std::vector<render::LegendEntry> legend;
                       for (std::size_t c = 0; c < errors.size(); ++c) {
-                        const auto x = logarithms(gaps), y = logarithms(errors[c]);
-                        render::draw_polyline(cairo, panel, x, y, {render::curve_colour(c), 1.5, 1});
-                        draw_dots(cairo, panel, x, y, render::curve_colour(c), 2.4);
-                        names.push_back(fmt::format("λ = {}", contrasts[c]));
-                        colours.push_back(render::curve_colour(c));
+                        const auto x = render::logarithms(gaps), y = render::logarithms(errors[c]);
+                        render::draw_polyline(pen, panel, x, y, {render::curve_colour(c)});
+                        render::draw_markers(pen, panel, x, y, render::Marker::dot, render::curve_colour(c), 1.5);
+                        legend.push_back({fmt::format("λ = {}", contrasts[c]), render::curve_colour(c), {}, false});
                       }
-                      render::AxisLabels labels;
-                      labels.x = "gap / R_{0}";
-                      labels.y = "relative error";
-                      draw_log_axes(cairo, font, panel, labels, true, true);
-                      render::draw_legend(cairo, font, panel, names, colours, render::Corner::lower_left);
-                      draw_configuration(cairo, font, panel.left + panel.width - 40, panel.top + 34, 14);
+                      const render::Axes axes{{"gap / R_{0}", render::Scale::logarithmic, true, false},
+                                              {"relative error", render::Scale::logarithmic, true, false}, 0};
+                      render::draw_axes(pen, panel, axes);
+                      render::draw_legend(pen, panel, legend, render::Corner::lower_left);
+                      draw_configuration(pen, panel.left + panel.width - 40, panel.top + 34, 14);
                     }};
   report.figure = std::move(figure);
   report.picture_text = "Relative error of (x⁺, σ⁺) after one block Jacobi iteration against the gap of two vesicles.";

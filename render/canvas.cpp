@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -34,7 +35,7 @@ void paint(cairo_surface_t* surface, const Drawing& drawing, double scale, const
   const Font font;
   const Context cairo(cairo_create(surface));
   cairo_scale(cairo.get(), scale, scale);
-  cairo_set_source_rgb(cairo.get(), 1, 1, 1);
+  cairo_set_source_rgb(cairo.get(), drawing.ground.r, drawing.ground.g, drawing.ground.b);
   cairo_paint(cairo.get());
   drawing.paint(cairo.get(), font);
   check(cairo_status(cairo.get()), path);
@@ -45,14 +46,27 @@ cairo_status_t append(void* text, const unsigned char* data, unsigned int length
   return CAIRO_STATUS_SUCCESS;
 }
 
-// Cairo numbers its surfaces through the life of the process and writes the number as an id that nothing refers to.
-std::string without_surface_numbers(const std::string& svg) {
-  constexpr std::string_view mark = "id=\"surface";
+// Cairo numbers surfaces and pictures through the life of the process: here they are numbered through the file.
+std::string renumbered(const std::string& svg) {
   std::string result;
-  std::size_t from = 0;
-  for (std::size_t at; (at = svg.find(mark, from)) != std::string::npos; from = svg.find('"', at + mark.size()))
-    result.append(svg, from, at + mark.size() - from);
-  return result.append(svg, from);
+  std::map<std::string, std::string> names;
+  constexpr std::string_view kinds[] = {"surface", "image"};
+  for (std::size_t at = 0; at < svg.size();) {
+    std::size_t length = 0;
+    if (at > 0 && (svg[at - 1] == '"' || svg[at - 1] == '#'))
+      for (const std::string_view kind : kinds)
+        if (svg.compare(at, kind.size(), kind) == 0) length = kind.size();
+    if (length == 0) {
+      result += svg[at++];
+      continue;
+    }
+    std::size_t end = at + length;
+    while (end < svg.size() && svg[end] >= '0' && svg[end] <= '9') ++end;
+    const std::string name = svg.substr(at, end - at);
+    result += names.try_emplace(name, svg.substr(at, length) + std::to_string(names.size())).first->second;
+    at = end;
+  }
+  return result;
 }
 
 }  // namespace
@@ -71,8 +85,8 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
   if (error) throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(error));
 }
 
-void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, double dots_per_inch) {
-  const double scale = dots_per_inch / 72;
+void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing) {
+  const double scale = drawing.dots_per_inch / 72;
   const int width = static_cast<int>(std::lround(drawing.width * scale));
   const int height = static_cast<int>(std::lround(drawing.height * scale));
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
@@ -103,7 +117,7 @@ void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()), path);
   }
-  write_text(path, without_surface_numbers(text));
+  write_text(path, renumbered(text));
 }
 
 void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing) {

@@ -1,6 +1,7 @@
 // A drawing in points that becomes PNG, SVG and PDF by one and the same function.
 #pragma once
 
+#include "palette.h"
 #include "text.h"
 
 #include <filesystem>
@@ -13,11 +14,13 @@ namespace render {
 struct Drawing {
   double width = 0, height = 0;
   std::function<void(cairo_t*, const Font&)> paint;
+  Colour ground = white;
+  double dots_per_inch = 200;  ///< of the PNG
 };
 
 /// Each is written under a temporary name and renamed; throws std::runtime_error with path and reason.
 /// The same drawing gives the same bytes: no dates, no names of machines, text as paths.
-void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, double dots_per_inch = 200);
+void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing);
 void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing);
 void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing);
 

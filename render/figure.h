@@ -1,12 +1,15 @@
-// Figures for papers: a catalogue of kinds, each drawn from states of a trajectory, written as PNG, SVG, PDF and CSV.
+// Figures for papers and talks: a catalogue of kinds, each drawn from values, written as PNG, SVG, PDF and CSV.
 #pragma once
 
 #include "canvas.h"
 #include "parameters.h"
+#include "plot.h"
+#include "streamlines.h"
 
 #include "sim/catalogue.h"
 #include "sim/types.h"
 
+#include <array>
 #include <vector>
 
 namespace render {
@@ -16,16 +19,55 @@ struct Series {
   std::string name;  ///< in the legend: "λ = 4"; column header of the CSV
   std::string axis;  ///< label of the panel's y axis: "σR_{0}^{2}/κ_{b}"
   std::vector<double> times, values;
+  Scale scale = Scale::linear;
+  std::optional<std::size_t> colour;  ///< number of the palette; else in order
+  bool dashed = false;
+  std::optional<std::string> legend;  ///< instead of the name there; empty: not there
+};
+
+/// A panel of curves.
+struct Curve {
+  std::string name;  ///< in the legend; empty: not there
+  std::vector<double> x, y;
+  std::vector<double> error;     ///< half lengths of bars; empty: none
+  std::size_t colour = 0;        ///< number of the palette
+  std::optional<double> instant; ///< 0..1: a colour between early and late instead
+  std::optional<Marker> marker;
+  bool line = true, dashed = false;
+};
+struct Plot {
+  Axis x, y;  ///< on a logarithmic axis the curves hold the values themselves
+  std::vector<Curve> curves;
+  std::optional<Range> x_range, y_range;
+  std::optional<Corner> legend;  ///< a place to keep
+};
+
+/// The flow in a plane at one instant, computed by others.
+struct FlowPicture {
+  CutPlane plane;  ///< origin: where the coordinates of lines and speeds have their zero
+  Range x, y;      ///< the window, in lengths of the scene
+  std::vector<Streamline> lines;
+  sim::Matrix speed;  ///< on a net of cells, row 0 at the top; empty: no background
+  std::array<Range, 2> speed_window;  ///< that the cells fill, along x and y
+  std::string speed_label = "|u|";
+  double speed_factor = 1;   ///< shown speed = this x speed
+  double spacing = 0.2;      ///< of the lines, length
+  std::vector<std::string> remarks;  ///< of the CSV, first lines
 };
 
 struct FigureInput {
-  std::vector<sim::State> states;   ///< those to show; see FigureRow::all_states
+  std::vector<sim::State> states;   ///< those to show
   std::vector<std::string> labels;  ///< one a vesicle, for the legend; may be empty
-  std::vector<Series> series;       ///< read by "time-series" alone
+  std::vector<Series> series;       ///< of "time-series"
+  std::vector<Plot> plots;          ///< of kinds that want plots
+  std::vector<Image> stills;        ///< of "snapshots": the pictures that sheet_layout() asks for
+  FlowPicture flow;                 ///< of "streamlines"
   std::string time_symbol = "t";    ///< "γ̇t", "χt"
   double time_factor = 1;           ///< shown time = this x State::time
   double length = 1;                ///< area radius: lengths are shown in units of it
   std::string length_symbol = "R_{0}";
+  std::string camera = "flow-gradient";  ///< of the stills
+  FigureParameters parameters;
 };
 
 struct Figure {
@@ -33,18 +75,48 @@ struct Figure {
   std::string csv;  ///< the same data; first line names columns
 };
 
+/// What a kind is drawn from.
+enum class FigureNeeds { instants, all_states, series, plots, stills, flow };
+
 struct FigureRow {
   std::string_view name;
   std::string_view meaning;
-  bool all_states;  ///< true: wants every saved state; false: a few chosen instants
+  FigureNeeds needs;
   Figure (*draw)(const FigureInput&);
 };
 const std::vector<FigureRow>& figures();
 /// Throws std::invalid_argument that names the nearest known kind.
 const FigureRow& find_figure(std::string_view name);
 
+/// The page that parameters ask for: sizes in points, 0 where the kind decides.
+struct Page {
+  Theme theme;
+  double width = 0, height = 0;
+};
+Page page_of(const FigureParameters& parameters);
+
 /// `panels` indices spread evenly over `count` states, first and last among them; or, with times, the nearest states.
 std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters);
+
+/// The plane of a figure; origin: the given point, or the vesicle's centroid. Its axes lie along x and z as far as they can.
+CutPlane plane_of(const FigureParameters& parameters, const sim::Vec3& centroid);
+/// "x" for the first axis of the scene, and so on; "ξ" and "η" when the plane is oblique.
+std::pair<std::string, std::string> axis_names(const CutPlane& plane);
+
+/// One picture of a sheet: place on the page in points, what it shows in lengths of the scene.
+struct SheetPanel {
+  double left = 0, top = 0, width = 0, height = 0;
+  sim::Vec3 target = sim::Vec3::Zero();
+  double half_height = 1;
+  std::string title;
+};
+struct Sheet {
+  double width = 0, height = 0;
+  double scale = 1;  ///< points per length, the same for all panels
+  std::vector<SheetPanel> panels;
+};
+/// Rows of panels at one scale that fill the page, each as wide as its state needs.
+Sheet sheet_layout(const FigureInput& input);
 
 /// stem.png, stem.svg, stem.pdf, stem.csv; returns the four paths. Throws std::runtime_error with path and reason.
 std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem);

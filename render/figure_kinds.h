@@ -1,4 +1,4 @@
-// The drawing functions behind the rows of the figure catalogue.
+// The drawing functions behind the rows of the figure catalogue, and what they share.
 #pragma once
 
 #include "figure.h"
@@ -7,7 +7,19 @@ namespace render {
 
 Figure draw_cross_sections(const FigureInput& input);
 Figure draw_overlay(const FigureInput& input);
+Figure draw_snapshots(const FigureInput& input);
+Figure draw_streamlines(const FigureInput& input);
 Figure draw_inclination(const FigureInput& input);
 Figure draw_time_series(const FigureInput& input);
+Figure draw_plots(const FigureInput& input);
+
+/// "γ̇t = 2.5".
+std::string time_text(const FigureInput& input, double time);
+/// a..z, then aa, ab, ...
+std::string letter(std::size_t k);
+/// Dark blue, green, orange: early (0) to late (1), distinct in grey as well.
+Colour colour_of_time(double t);
+/// A text that may hold commas or quotes as one cell of a CSV.
+std::string csv_cell(const std::string& text);
 
 }  // namespace render

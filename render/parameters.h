@@ -237,12 +237,33 @@ void visit(P& p, V&& v) {
     p.time_per_frame);
 }
 
+inline constexpr std::array<std::string_view, 2> size_units{"mm", "px"};
+inline constexpr std::array<std::string_view, 3> window_names{"auto", "common", "own"};
+inline constexpr std::array<std::string_view, 2> frame_names{"laboratory", "vesicle"};
+inline constexpr std::array<std::string_view, 2> flow_background_names{"speed", "none"};
+
 /// [[figure]]: one figure a table.
 struct FigureParameters {
   std::string kind = "cross-sections";
   std::string out;            ///< file name without extension; empty: the kind's name
   std::vector<double> times;  ///< empty: evenly spread over the trajectory
   int panels = 6;
+  int columns = 0;
+  std::vector<double> size;  ///< width, or width and height; empty: as the kind and the theme say
+  std::string unit = "mm";
+  std::string theme = "paper";
+  double font_size = 0;  ///< pt; 0: the theme's
+  double dots_per_inch = 200;
+  std::vector<double> plane_point;  ///< empty: through the centroid of each vesicle
+  sim::Vec3 plane_normal{0, 1, 0};
+  std::string window = "auto";
+  std::vector<std::string> quantities{"inclination", "axes", "energy", "errors"};
+  std::string abscissa = "inclination";
+  std::string ordinate = "deformation";
+  std::string frame = "vesicle";
+  double spacing = 0.16;  ///< of streamlines, R0
+  double margin = 1;      ///< round the vesicles in a picture of the flow, R0
+  std::string background = "speed";
 };
 
 template <class P, class V>
@@ -264,6 +285,65 @@ void visit(P& p, V&& v) {
               .minimum = 1,
               .maximum = 64},
     p.panels);
+  v(Parameter{.name = "columns", .unit = "", .meaning = "panels in a row; 0: as many as look well", .minimum = 0, .maximum = 64},
+    p.columns);
+  v(Parameter{.name = "size",
+              .unit = "unit",
+              .meaning = "width of the page, or width and height; empty: as kind and theme say",
+              .minimum = 10,
+              .maximum = 20000},
+    p.size);
+  v(Parameter{.name = "unit", .unit = "", .meaning = "of size: millimetres, or pixels of the PNG", .choices = size_units},
+    p.unit);
+  v(Parameter{.name = "theme", .unit = "", .meaning = "sizes of text and lines, colours, page", .catalogue = "themes"}, p.theme);
+  v(Parameter{.name = "font_size",
+              .unit = "pt",
+              .meaning = "of numbers and legends; the rest follows; 0: the theme's",
+              .minimum = 0,
+              .maximum = 72},
+    p.font_size);
+  v(Parameter{.name = "dots_per_inch", .unit = "1/inch", .meaning = "of the PNG", .minimum = 30, .maximum = 2400},
+    p.dots_per_inch);
+  v(Parameter{.name = "plane_point",
+              .unit = "length",
+              .meaning = "a point of the plane that cuts all vesicles; empty: through the centroid of each"},
+    p.plane_point);
+  v(Parameter{.name = "plane_normal", .unit = "", .meaning = "normal of the plane of cross-sections and streamlines"},
+    p.plane_normal);
+  v(Parameter{.name = "window",
+              .unit = "",
+              .meaning = "of cross-sections: one for all, each round its own state, or common until vesicles drift far",
+              .choices = window_names},
+    p.window);
+  v(Parameter{.name = "quantities",
+              .unit = "",
+              .meaning = "of time-series, a panel each",
+              .catalogue = "quantities"},
+    p.quantities);
+  v(Parameter{.name = "abscissa", .unit = "", .meaning = "of a phase portrait", .catalogue = "quantities"}, p.abscissa);
+  v(Parameter{.name = "ordinate", .unit = "", .meaning = "of a phase portrait", .catalogue = "quantities"}, p.ordinate);
+  v(Parameter{.name = "frame",
+              .unit = "",
+              .meaning = "of streamlines: at rest, or moving with the centroid of the vesicles",
+              .choices = frame_names},
+    p.frame);
+  v(Parameter{.name = "spacing",
+              .unit = "R0",
+              .meaning = "distance of neighbouring streamlines",
+              .minimum = 0.02,
+              .maximum = 10},
+    p.spacing);
+  v(Parameter{.name = "margin",
+              .unit = "R0",
+              .meaning = "round the vesicles in a picture of the flow",
+              .minimum = 0.05,
+              .maximum = 100},
+    p.margin);
+  v(Parameter{.name = "background",
+              .unit = "",
+              .meaning = "under streamlines: the speed by colours with a bar, or nothing",
+              .choices = flow_background_names},
+    p.background);
 }
 
 }  // namespace render

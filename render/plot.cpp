@@ -1,32 +1,51 @@
 #include "plot.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <numbers>
 
 namespace render {
 namespace {
 
-constexpr double line = 0.9, tick = 4.5;  // pt
-constexpr Colour black{0.10, 0.10, 0.12}, faint{0.90, 0.91, 0.92};
-
-void set_colour(cairo_t* cairo, const Colour& c, double opacity = 1) {
-  cairo_set_source_rgba(cairo, c.r, c.g, c.b, opacity);
-}
+constexpr double number_gap = 0.5;  // between the frame and a number, in heights of the text
 
 void clip_to(cairo_t* cairo, const Panel& p) {
   cairo_rectangle(cairo, p.left, p.top, p.width, p.height);
   cairo_clip(cairo);
 }
 
+std::string power_text(double decade) {
+  const int n = static_cast<int>(std::lround(decade));
+  return fmt::format("10^{{{}{}}}", n < 0 ? "−" : "", std::abs(n));
+}
+
 }  // namespace
 
-std::vector<double> tick_values(const Range& range, int wanted, bool degrees) {
+void set_colour(const Pen& pen, const Colour& c, double opacity) {
+  cairo_set_source_rgba(pen.cairo, c.r, c.g, c.b, opacity);
+}
+
+Ruler::Ruler() {
+  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
+  cairo_ = {cairo_create(surface), cairo_destroy};
+  cairo_surface_destroy(surface);
+}
+
+double Ruler::width(double size, std::string_view text) const { return text_width(cairo_.get(), font_, size, text); }
+
+std::vector<double> tick_values(const Range& range, int wanted, Scale scale) {
   if (!(range.size() > 0) || wanted < 1) return {};
   const double raw = range.size() / wanted, power = std::pow(10.0, std::floor(std::log10(raw)));
   std::vector<double> steps;
-  if (degrees && raw > 4)
-    steps = {5, 15, 30, 45, 90, 180};
+  if (scale == Scale::logarithmic)
+    for (const double s : {1.0, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0, 50.0, 100.0}) steps.push_back(s);
+  else if (scale == Scale::degrees && raw > 4)
+    steps = {5, 15, 30, 45, 90, 180, 360, 720, 1800, 3600};
   else
     for (const double factor : {1.0, 2.0, 2.5, 5.0, 10.0}) steps.push_back(factor * power);
   double step = steps.back();
@@ -41,6 +60,23 @@ std::vector<double> tick_values(const Range& range, int wanted, bool degrees) {
   return ticks;
 }
 
+std::vector<std::string> tick_texts(const std::vector<double>& values, Scale scale) {
+  std::vector<std::string> texts;
+  double largest = 0;
+  for (const double v : values) largest = std::max(largest, std::abs(v));
+  int digits = 0;
+  for (const double v : values)
+    while (digits < 6 && std::abs(v * std::pow(10, digits) - std::round(v * std::pow(10, digits))) > 1e-6 * std::max(1.0, std::abs(v)))
+      ++digits;
+  const bool plain = largest == 0 || (largest >= 1e-3 && largest < 1e5 && digits < 6);
+  for (const double v : values) {
+    if (scale == Scale::logarithmic) texts.push_back(power_text(v));
+    else if (!plain) texts.push_back(number_text(v));
+    else texts.push_back(fmt::format("{}{:.{}f}", v < 0 ? "−" : "", std::abs(v), digits));
+  }
+  return texts;
+}
+
 Range range_of(const std::vector<double>& values, double margin, double least) {
   Range r{1e300, -1e300};
   for (const double v : values)
@@ -50,59 +86,154 @@ Range range_of(const std::vector<double>& values, double margin, double least) {
   return {middle - half, middle + half};
 }
 
-void draw_grid(cairo_t* cairo, const Panel& p, const AxisLabels& labels) {
-  cairo_set_line_width(cairo, 0.6);
-  set_colour(cairo, faint);
-  for (const double v : tick_values(p.x, labels.x_ticks)) {
-    cairo_move_to(cairo, p.page_x(v), p.top);
-    cairo_line_to(cairo, p.page_x(v), p.top + p.height);
-  }
-  for (const double v : tick_values(p.y, labels.y_ticks, labels.y_degrees)) {
-    cairo_move_to(cairo, p.left, p.page_y(v));
-    cairo_line_to(cairo, p.left + p.width, p.page_y(v));
-  }
-  cairo_stroke(cairo);
+Range decades(const std::vector<double>& values) {
+  double low = 1e300, high = 0;
+  for (const double v : values)
+    if (v > 0 && std::isfinite(v)) {
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  if (high == 0) return {0, 1};
+  const Range range{std::floor(std::log10(low) + 1e-9), std::ceil(std::log10(high) - 1e-9)};
+  return {range.low, std::max(range.high, range.low + 1)};
 }
 
-void draw_axes(cairo_t* cairo, const Font& font, const Panel& p, const AxisLabels& labels) {
-  set_colour(cairo, black);
-  cairo_set_line_width(cairo, line);
+std::vector<double> logarithms(const std::vector<double>& values) {
+  std::vector<double> logs;
+  for (const double v : values) logs.push_back(v > 0 ? std::log10(v) : std::nan(""));
+  return logs;
+}
+
+Ticks ticks_of(const Ruler& ruler, const Theme& theme, const Axis& axis, const Range& range, double length, bool horizontal) {
+  const auto measured = [&](std::vector<double> values) {
+    Ticks t{std::move(values), {}, 0};
+    t.texts = tick_texts(t.values, axis.scale);
+    for (const std::string& text : t.texts) t.widest = std::max(t.widest, ruler.width(theme.text, text));
+    return t;
+  };
+  const auto fits = [&](const Ticks& t) {
+    double end = -1e300;  // of the number before
+    for (std::size_t k = 0; k < t.values.size(); ++k) {
+      const double extent = horizontal ? ruler.width(theme.text, t.texts[k]) : 1.15 * theme.text;
+      const double at = (t.values[k] - range.low) / range.size() * length;
+      if (at - extent / 2 < end + 0.55 * theme.text) return false;
+      end = at + extent / 2;
+    }
+    return true;
+  };
+  const int most = std::clamp(static_cast<int>(length / (horizontal ? 5 : 3.2) / theme.text), 2, 6);
+  for (int wanted = most; wanted >= 1; --wanted)
+    if (Ticks t = measured(tick_values(range, wanted, axis.scale)); t.values.size() >= 2 && fits(t)) return t;
+  // A short axis: two numbers that are far apart, or one.
+  for (int wanted = 1; wanted <= 6; ++wanted)
+    if (std::vector<double> v = tick_values(range, wanted, axis.scale); v.size() >= 2)
+      if (Ticks t = measured({v.front(), v.back()}); fits(t)) return t;
+  for (int wanted = 1; wanted <= 6; ++wanted)
+    if (const std::vector<double> v = tick_values(range, wanted, axis.scale); !v.empty()) return measured({v[v.size() / 2]});
+  return {};
+}
+
+Margins margins_of(const Ruler& ruler, const Theme& theme, const Axes& axes, const Panel& panel) {
+  Margins m;
+  const double edge = 0.35 * theme.text;
+  m.top = m.left = m.right = m.bottom = edge;
+  const Ticks x = ticks_of(ruler, theme, axes.x, panel.x, panel.width, true);
+  const Ticks y = ticks_of(ruler, theme, axes.y, panel.y, panel.height, false);
+  if (axes.y.numbers) {
+    m.left += y.widest + number_gap * theme.text;
+    m.top = std::max(m.top, 0.6 * theme.text);
+  }
+  if (!axes.y.label.empty()) m.left = std::max(m.left, axes.label_room) + 1.35 * theme.label;
+  if (axes.x.numbers) {
+    m.bottom += 1.3 * theme.text + number_gap * theme.text;
+    if (!x.texts.empty()) {  // a number at the end of the axis hangs over
+      const double at = (x.values.back() - panel.x.low) / panel.x.size() * panel.width;
+      m.right = std::max(m.right, edge + at + ruler.width(theme.text, x.texts.back()) / 2 - panel.width);
+    }
+  }
+  if (!axes.x.label.empty()) m.bottom += 1.5 * theme.label;
+  return m;
+}
+
+void draw_grid(const Pen& pen, const Panel& p, const Axes& axes) {
+  const Ruler ruler;
+  cairo_set_line_width(pen.cairo, 0.65 * pen.theme.line);
+  set_colour(pen, pen.theme.faint);
+  if (axes.x.grid)
+    for (const double v : ticks_of(ruler, pen.theme, axes.x, p.x, p.width, true).values) {
+      cairo_move_to(pen.cairo, p.page_x(v), p.top);
+      cairo_line_to(pen.cairo, p.page_x(v), p.top + p.height);
+    }
+  if (axes.y.grid)
+    for (const double v : ticks_of(ruler, pen.theme, axes.y, p.y, p.height, false).values) {
+      cairo_move_to(pen.cairo, p.left, p.page_y(v));
+      cairo_line_to(pen.cairo, p.left + p.width, p.page_y(v));
+    }
+  cairo_stroke(pen.cairo);
+}
+
+void draw_axes(const Pen& pen, const Panel& p, const Axes& axes) {
+  cairo_t* cairo = pen.cairo;
+  const Theme& theme = pen.theme;
+  const Ruler ruler;
+  set_colour(pen, theme.ink);
+  cairo_set_line_width(cairo, theme.line);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT);
   cairo_set_line_join(cairo, CAIRO_LINE_JOIN_MITER);
-  const std::vector<double> xs = tick_values(p.x, labels.x_ticks), ys = tick_values(p.y, labels.y_ticks, labels.y_degrees);
-  for (const double v : xs) {
-    cairo_move_to(cairo, p.page_x(v), p.top + p.height);
-    cairo_rel_line_to(cairo, 0, -tick);
-  }
-  for (const double v : ys) {
-    cairo_move_to(cairo, p.left, p.page_y(v));
-    cairo_rel_line_to(cairo, tick, 0);
-  }
+  const Ticks xs = ticks_of(ruler, theme, axes.x, p.x, p.width, true), ys = ticks_of(ruler, theme, axes.y, p.y, p.height, false);
+  const auto mark = [&](bool horizontal, double v, double length) {
+    const Range& range = horizontal ? p.x : p.y;
+    if (v < range.low - 1e-9 * range.size() || v > range.high + 1e-9 * range.size()) return;
+    cairo_move_to(cairo, horizontal ? p.page_x(v) : p.left, horizontal ? p.top + p.height : p.page_y(v));
+    cairo_rel_line_to(cairo, horizontal ? 0 : length, horizontal ? -length : 0);
+  };
+  const auto marks = [&](bool horizontal, const Axis& axis, const Ticks& ticks) {
+    for (const double v : ticks.values) mark(horizontal, v, theme.tick);
+    if (axis.scale != Scale::logarithmic) return;
+    const Range& range = horizontal ? p.x : p.y;
+    const double length = horizontal ? p.width : p.height;
+    for (double decade = std::floor(range.low); decade <= range.high; ++decade) {
+      mark(horizontal, decade, theme.tick);
+      if (length / range.size() > 2.5 * theme.text)  // room for the marks between
+        for (int k = 2; k < 10; ++k) mark(horizontal, decade + std::log10(k), 0.55 * theme.tick);
+    }
+  };
+  marks(true, axes.x, xs);
+  marks(false, axes.y, ys);
   cairo_stroke(cairo);
   cairo_rectangle(cairo, p.left, p.top, p.width, p.height);
   cairo_stroke(cairo);
-  double widest = 0;
-  if (labels.x_numbers)
-    for (const double v : xs)
-      draw_text(cairo, font, tick_text, p.page_x(v), p.top + p.height + 4 + tick_text, number_text(v), Align::centre);
-  if (labels.y_numbers)
-    for (const double v : ys)
-      widest = std::max(widest, draw_text(cairo, font, tick_text, p.left - 5, p.page_y(v) + 0.36 * tick_text, number_text(v),
-                                          Align::right));
-  if (!labels.x.empty())
-    draw_text(cairo, font, label_text, p.left + p.width / 2, p.top + p.height + 9 + tick_text + label_text, labels.x,
+  if (axes.x.numbers)
+    for (std::size_t k = 0; k < xs.values.size(); ++k)
+      draw_text(cairo, pen.font, theme.text, p.page_x(xs.values[k]), p.top + p.height + (number_gap + 1) * theme.text, xs.texts[k],
+                Align::centre);
+  if (axes.y.numbers)
+    for (std::size_t k = 0; k < ys.values.size(); ++k)
+      draw_text(cairo, pen.font, theme.text, p.left - number_gap * theme.text, p.page_y(ys.values[k]) + 0.36 * theme.text,
+                ys.texts[k], Align::right);
+  if (!axes.x.label.empty())
+    draw_text(cairo, pen.font, theme.label, p.left + p.width / 2,
+              p.top + p.height + (axes.x.numbers ? (number_gap + 1.3) * theme.text : 0) + 1.15 * theme.label, axes.x.label,
               Align::centre);
-  if (!labels.y.empty()) {
-    cairo_save(cairo);
-    cairo_translate(cairo, p.left - 12 - widest, p.top + p.height / 2);
-    cairo_rotate(cairo, -1.5707963267948966);
-    draw_text(cairo, font, label_text, 0, 0, labels.y, Align::centre);
-    cairo_restore(cairo);
-  }
+  if (axes.y.label.empty()) return;
+  const double beside = axes.label_room > 0 ? axes.label_room : axes.y.numbers ? ys.widest + number_gap * theme.text : 0;
+  cairo_save(cairo);
+  cairo_translate(cairo, p.left - beside - 0.6 * theme.label, p.top + p.height / 2);
+  cairo_rotate(cairo, -std::numbers::pi / 2);
+  draw_text(cairo, pen.font, theme.label, 0, 0, axes.y.label, Align::centre);
+  cairo_restore(cairo);
 }
 
-void draw_polyline(cairo_t* cairo, const Panel& p, const std::vector<double>& x, const std::vector<double>& y,
+double title_height(const Theme& theme) { return 1.75 * theme.label; }
+
+void draw_title(const Pen& pen, const Panel& p, std::string_view text) {
+  set_colour(pen, pen.theme.ink);
+  draw_text(pen.cairo, pen.font, pen.theme.label, p.left, p.top - 0.55 * pen.theme.label, text);
+}
+
+void draw_polyline(const Pen& pen, const Panel& p, const std::vector<double>& x, const std::vector<double>& y,
                    const Stroke& stroke) {
+  cairo_t* cairo = pen.cairo;
   cairo_save(cairo);
   clip_to(cairo, p);
   cairo_new_path(cairo);
@@ -115,16 +246,20 @@ void draw_polyline(cairo_t* cairo, const Panel& p, const std::vector<double>& x,
     (down ? cairo_line_to : cairo_move_to)(cairo, p.page_x(x[i]), p.page_y(y[i]));
     down = true;
   }
-  set_colour(cairo, stroke.colour, stroke.opacity);
-  cairo_set_line_width(cairo, stroke.width);
+  set_colour(pen, stroke.colour, stroke.opacity);
+  const double width = stroke.width * pen.theme.stroke;
+  cairo_set_line_width(cairo, width);
   cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
-  cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_cap(cairo, stroke.dashed ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
+  const double dashes[2] = {4 * width, 2.6 * width};
+  if (stroke.dashed) cairo_set_dash(cairo, dashes, 2, 0);
   cairo_stroke(cairo);
   cairo_restore(cairo);
 }
 
-void draw_closed_curve(cairo_t* cairo, const Panel& p, const ClosedCurve& curve, const Eigen::Vector2d& shift,
+void draw_closed_curve(const Pen& pen, const Panel& p, const ClosedCurve& curve, const Eigen::Vector2d& shift,
                        const Stroke& stroke, double fill_opacity) {
+  cairo_t* cairo = pen.cairo;
   cairo_save(cairo);
   clip_to(cairo, p);
   cairo_new_path(cairo);
@@ -138,66 +273,190 @@ void draw_closed_curve(cairo_t* cairo, const Panel& p, const ClosedCurve& curve,
   }
   cairo_close_path(cairo);
   if (fill_opacity > 0) {
-    set_colour(cairo, stroke.colour, fill_opacity);
+    set_colour(pen, stroke.colour, fill_opacity);
     cairo_fill_preserve(cairo);
   }
-  set_colour(cairo, stroke.colour, stroke.opacity);
-  cairo_set_line_width(cairo, stroke.width);
+  set_colour(pen, stroke.colour, stroke.opacity);
+  cairo_set_line_width(cairo, stroke.width * pen.theme.stroke);
   cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
   cairo_stroke(cairo);
   cairo_restore(cairo);
 }
 
-double legend_height(std::size_t names) { return 1.45 * tick_text * static_cast<double>(names) + 10; }
+namespace {
 
-void draw_legend(cairo_t* cairo, const Font& font, const Panel& p, const std::vector<std::string>& names,
-                 const std::vector<Colour>& colours, Corner corner) {
+void marker_path(cairo_t* cairo, Marker marker, double x, double y, double r) {
+  cairo_new_path(cairo);
+  const auto polygon = [&](std::initializer_list<std::array<double, 2>> corners) {
+    for (const auto& c : corners) cairo_line_to(cairo, x + r * c[0], y + r * c[1]);
+    cairo_close_path(cairo);
+  };
+  switch (marker) {
+    case Marker::dot:
+    case Marker::ring: cairo_arc(cairo, x, y, r, 0, 2 * std::numbers::pi); break;
+    case Marker::square: polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}); break;
+    case Marker::diamond: polygon({{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}}); break;
+    case Marker::triangle: polygon({{0, -1.25}, {1.1, 0.75}, {-1.1, 0.75}}); break;
+  }
+}
+
+void draw_marker(const Pen& pen, Marker marker, double x, double y, const Colour& colour, double radius) {
+  const double r = radius * pen.theme.stroke;
+  marker_path(pen.cairo, marker, x, y, r);
+  set_colour(pen, marker == Marker::ring ? pen.theme.ground : colour);
+  cairo_fill_preserve(pen.cairo);
+  set_colour(pen, colour);
+  cairo_set_line_width(pen.cairo, 0.8 * pen.theme.stroke);
+  if (marker == Marker::ring) cairo_stroke(pen.cairo);
+  cairo_new_path(pen.cairo);
+}
+
+}  // namespace
+
+void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y, Marker marker,
+                  const Colour& colour, double radius, const std::vector<double>& error) {
+  for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) {
+    if (!std::isfinite(x[k]) || !std::isfinite(y[k])) continue;
+    if (k < error.size() && error[k] > 0) {
+      const double low = panel.page_y(y[k] - error[k]), high = panel.page_y(y[k] + error[k]), at = panel.page_x(x[k]);
+      const double cap = radius * pen.theme.stroke;
+      set_colour(pen, colour);
+      cairo_set_line_width(pen.cairo, pen.theme.line);
+      cairo_new_path(pen.cairo);
+      cairo_move_to(pen.cairo, at, low);
+      cairo_line_to(pen.cairo, at, high);
+      for (const double end : {low, high}) {
+        cairo_move_to(pen.cairo, at - cap, end);
+        cairo_rel_line_to(pen.cairo, 2 * cap, 0);
+      }
+      cairo_stroke(pen.cairo);
+    }
+    draw_marker(pen, marker, panel.page_x(x[k]), panel.page_y(y[k]), colour, radius);
+  }
+}
+
+void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height, bool smooth) {
+  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height);
+  unsigned char* data = cairo_image_surface_get_data(surface);
+  if (data == nullptr) {
+    cairo_surface_destroy(surface);
+    throw std::bad_alloc();
+  }
+  const int stride = cairo_image_surface_get_stride(surface);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* c = image.at(x, y);
+      const std::uint32_t v = static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2];
+      std::memcpy(data + static_cast<std::ptrdiff_t>(y) * stride + 4 * static_cast<std::ptrdiff_t>(x), &v, sizeof v);
+    }
+  cairo_surface_mark_dirty(surface);
+  cairo_save(cairo);
+  cairo_translate(cairo, left, top);
+  cairo_scale(cairo, width / image.width, height / image.height);
+  cairo_set_source_surface(cairo, surface, 0, 0);
+  cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);  // or the edges fade into the ground
+  cairo_pattern_set_filter(cairo_get_source(cairo), smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
+  cairo_rectangle(cairo, 0, 0, image.width, image.height);
+  cairo_fill(cairo);
+  cairo_restore(cairo);
+  cairo_surface_destroy(surface);
+}
+
+namespace {
+
+constexpr double sample = 2.6, legend_spacing = 1.45, legend_edge = 0.8;  // in heights of the text
+
+void draw_entry(const Pen& pen, const LegendEntry& entry, double x, double baseline) {
+  const double y = baseline - 0.33 * pen.theme.text, length = sample * pen.theme.text;
+  if (entry.marker) {
+    draw_marker(pen, *entry.marker, x + length / 2, y, entry.colour, 1.8);
+    return;
+  }
+  set_colour(pen, entry.colour);
+  cairo_save(pen.cairo);
+  cairo_set_line_width(pen.cairo, pen.theme.stroke);
+  const double dashes[2] = {4 * pen.theme.stroke, 2.6 * pen.theme.stroke};
+  if (entry.dashed) cairo_set_dash(pen.cairo, dashes, 2, 0);
+  cairo_set_line_cap(pen.cairo, CAIRO_LINE_CAP_BUTT);
+  cairo_move_to(pen.cairo, x, y);
+  cairo_rel_line_to(pen.cairo, length, 0);
+  cairo_stroke(pen.cairo);
+  cairo_restore(pen.cairo);
+}
+
+}  // namespace
+
+Eigen::Vector2d legend_size(const Ruler& ruler, const Theme& theme, const std::vector<LegendEntry>& entries) {
+  if (entries.empty()) return Eigen::Vector2d::Zero();
   double widest = 0;
-  for (const std::string& name : names) widest = std::max(widest, text_width(cairo, font, tick_text, name));
-  const double spacing = 1.45 * tick_text, height = spacing * static_cast<double>(names.size());
+  for (const LegendEntry& e : entries) widest = std::max(widest, ruler.width(theme.text, e.name));
+  return {widest + (sample + 0.6 + 2 * legend_edge) * theme.text,
+          (legend_spacing * static_cast<double>(entries.size()) + 2 * legend_edge - 0.4) * theme.text};
+}
+
+void draw_legend(const Pen& pen, const Panel& p, const std::vector<LegendEntry>& entries, Corner corner) {
+  if (entries.empty()) return;
+  const Eigen::Vector2d size = legend_size(Ruler(), pen.theme, entries);
   const bool right = corner == Corner::upper_right || corner == Corner::lower_right;
   const bool upper = corner == Corner::upper_right || corner == Corner::upper_left;
-  const double x = right ? p.left + p.width - 10 - widest : p.left + 38;
-  double y = upper ? p.top + 7 + tick_text : p.top + p.height - height - 9 + tick_text;
-  for (std::size_t i = 0; i < names.size(); ++i, y += spacing) {
-    set_colour(cairo, colours[i]);
-    cairo_set_line_width(cairo, 1.6);
-    cairo_move_to(cairo, x - 28, y - 0.33 * tick_text);
-    cairo_rel_line_to(cairo, 22, 0);
-    cairo_stroke(cairo);
-    set_colour(cairo, black);
-    draw_text(cairo, font, tick_text, x, y, names[i]);
+  const double text = pen.theme.text, x = (right ? p.left + p.width - size.x() : p.left) + legend_edge * text;
+  double y = (upper ? p.top : p.top + p.height - size.y()) + (legend_edge + 0.9) * text;
+  for (const LegendEntry& entry : entries) {
+    draw_entry(pen, entry, x, y);
+    set_colour(pen, pen.theme.ink);
+    draw_text(pen.cairo, pen.font, text, x + (sample + 0.6) * text, y, entry.name);
+    y += legend_spacing * text;
   }
 }
 
-void draw_legend_line(cairo_t* cairo, const Font& font, double right, double baseline, const std::vector<std::string>& names,
-                      const std::vector<Colour>& colours) {
+void draw_legend_line(const Pen& pen, double right, double baseline, const std::vector<LegendEntry>& entries) {
+  const double text = pen.theme.text;
   double x = right;
-  for (std::size_t i = names.size(); i-- > 0;) {
-    set_colour(cairo, black);
-    x -= draw_text(cairo, font, tick_text, x, baseline, names[i], Align::right);
-    set_colour(cairo, colours[i]);
-    cairo_set_line_width(cairo, 1.6);
-    cairo_move_to(cairo, x - 26, baseline - 0.33 * tick_text);
-    cairo_rel_line_to(cairo, 20, 0);
-    cairo_stroke(cairo);
-    x -= 42;
+  for (std::size_t i = entries.size(); i-- > 0;) {
+    set_colour(pen, pen.theme.ink);
+    x -= draw_text(pen.cairo, pen.font, text, x, baseline, entries[i].name, Align::right) + (sample + 0.6) * text;
+    draw_entry(pen, entries[i], x, baseline);
+    x -= 1.8 * text;
   }
 }
 
-std::optional<Corner> empty_corner(const Panel& p, const std::vector<double>& x, const std::vector<double>& y) {
-  constexpr std::array<Corner, 4> corners{Corner::upper_right, Corner::lower_right, Corner::upper_left, Corner::lower_left};
-  std::array<int, 4> points{};
-  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
-    const double a = (x[i] - p.x.low) / p.x.size(), b = (y[i] - p.y.low) / p.y.size();
-    if (b > 0.66 && a > 0.66) ++points[0];
-    if (b > 0.66 && a < 0.34) ++points[2];
-    if (b < 0.34 && a > 0.66) ++points[1];
-    if (b < 0.34 && a < 0.34) ++points[3];
+std::optional<Corner> empty_corner(const Panel& p, const Eigen::Vector2d& size,
+                                   const std::vector<std::pair<std::vector<double>, std::vector<double>>>& curves) {
+  const auto holds = [&](Corner corner, double x, double y) {
+    const bool right = corner == Corner::upper_right || corner == Corner::lower_right;
+    const bool upper = corner == Corner::upper_right || corner == Corner::upper_left;
+    return (right ? x > p.left + p.width - size.x() : x < p.left + size.x()) &&
+           (upper ? y < p.top + size.y() : y > p.top + p.height - size.y());
+  };
+  for (const Corner corner : {Corner::upper_right, Corner::upper_left, Corner::lower_right, Corner::lower_left}) {
+    bool empty = true;
+    for (const auto& [x, y] : curves)
+      for (std::size_t i = 0; empty && i < std::min(x.size(), y.size()); ++i) {
+        if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+        const double x1 = p.page_x(x[i]), y1 = p.page_y(y[i]);
+        empty = !holds(corner, x1, y1);
+        if (i == 0 || !std::isfinite(x[i - 1]) || !std::isfinite(y[i - 1])) continue;
+        const double x0 = p.page_x(x[i - 1]), y0 = p.page_y(y[i - 1]);
+        const int pieces = std::clamp(static_cast<int>(std::hypot(x1 - x0, y1 - y0) / 4), 1, 100);
+        for (int k = 1; empty && k < pieces; ++k) empty = !holds(corner, x0 + (x1 - x0) * k / pieces, y0 + (y1 - y0) * k / pieces);
+      }
+    if (empty) return corner;
   }
-  const auto empty = std::find(points.begin(), points.end(), 0);
-  if (empty == points.end()) return {};
-  return corners[static_cast<std::size_t>(empty - points.begin())];
+  return {};
 }
+
+Colour on_ground(const Theme& theme, const Colour& c) {
+  if (theme.ground.g > 0.5) return c;
+  if (c == Colour{}) return theme.ink;
+  const auto lighter = [](double v) { return 0.70 * v + 0.30; };
+  return {lighter(c.r), lighter(c.g), lighter(c.b)};
+}
+
+Colour vesicle_colour(const Theme& theme, std::size_t vesicle) {
+  constexpr std::array<std::size_t, 7> hues{1, 0, 4, 2, 3, 6, 5};  // coral, sky, amber, green, lilac, slate...
+  return curve_colour(theme, hues[vesicle % hues.size()]);
+}
+
+Colour curve_colour(const Theme& theme, std::size_t curve) { return on_ground(theme, render::curve_colour(curve)); }
 
 }  // namespace render

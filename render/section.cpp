@@ -137,30 +137,37 @@ std::vector<ClosedCurve> cut(const sim::Coefficients& position, const CutPlane& 
   const sim::Vector height = (sim::sample_points(position, s).rowwise() - plane.origin.transpose()) * plane.normal;
   const Net net = crossing_edges(plan, height);
   if (net.edges.empty()) return {};
-  const SurfacePoints found = surface_points(position, zeros_on_edges(position, plane, net, s, height));
+  const Matrix parameters = zeros_on_edges(position, plane, net, s, height);
+  const SurfacePoints found = surface_points(position, parameters);
   const double size = height.maxCoeff() - height.minCoeff();
 
   std::vector<ClosedCurve> curves;
   for (const std::vector<int>& loop : loops_of(net)) {
-    std::vector<Eigen::Vector4d> rows;  // point, tangent
+    struct Row {
+      Eigen::Vector2d point, tangent;
+      int edge;
+    };
+    std::vector<Row> rows;
     for (const int k : loop) {
       const Vec3 x = found.position.row(k).transpose() - plane.origin, n = found.normal.row(k);
       const Eigen::Vector2d p(x.dot(plane.right), x.dot(plane.up)), out(n.dot(plane.right), n.dot(plane.up));
       if (!(out.norm() > 1e-9)) continue;  // the plane touches the surface here
       const Eigen::Vector2d along = Eigen::Vector2d(-out.y(), out.x()).normalized();
-      if (!rows.empty() && (rows.back().head<2>() - p).norm() < 1e-9 * size) continue;
-      rows.push_back({p.x(), p.y(), along.x(), along.y()});
+      if (!rows.empty() && (rows.back().point - p).norm() < 1e-9 * size) continue;
+      rows.push_back({p, along, k});
     }
-    if (rows.size() > 1 && (rows.back().head<2>() - rows.front().head<2>()).norm() < 1e-9 * size) rows.pop_back();
+    if (rows.size() > 1 && (rows.back().point - rows.front().point).norm() < 1e-9 * size) rows.pop_back();
     if (rows.size() < 3) continue;
     double forward = 0;  // does the chain run the way its tangents point?
     for (std::size_t i = 0; i < rows.size(); ++i)
-      forward += (rows[(i + 1) % rows.size()] - rows[i]).head<2>().dot(rows[i].tail<2>());
+      forward += (rows[(i + 1) % rows.size()].point - rows[i].point).dot(rows[i].tangent);
     if (forward < 0) std::reverse(rows.begin(), rows.end());
-    ClosedCurve curve{Matrix(rows.size(), 2), Matrix(rows.size(), 2)};
+    ClosedCurve curve{Matrix(rows.size(), 2), Matrix(rows.size(), 2), Matrix(rows.size(), 3)};
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      curve.points.row(static_cast<Eigen::Index>(i)) = rows[i].head<2>().transpose();
-      curve.tangents.row(static_cast<Eigen::Index>(i)) = rows[i].tail<2>().transpose();
+      const auto row = static_cast<Eigen::Index>(i);
+      curve.points.row(row) = rows[i].point.transpose();
+      curve.tangents.row(row) = rows[i].tangent.transpose();
+      curve.directions.row(row) = parameters.row(rows[i].edge);
     }
     curves.push_back(std::move(curve));
   }

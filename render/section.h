@@ -19,6 +19,7 @@ struct CutPlane {
 struct ClosedCurve {
   sim::Matrix points;    ///< count x 2: along right and up, relative to the plane's origin
   sim::Matrix tangents;  ///< count x 2, unit vectors in the direction of travel
+  sim::Matrix directions;  ///< count x 3: parameters of the points on the unit sphere
 };
 
 /// All curves, longest first. The zero set of (x(s) - origin) . normal is traced on a net of `latitudes` x 2 latitudes

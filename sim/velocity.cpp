@@ -27,12 +27,17 @@ FlowSource::Level level(Plans& plans, const FlowSource& source, int order) {
   l.sources.high = g.x.value.colwise().maxCoeff().transpose();
   l.force = basis.synthesize(source.densities.force).values;
   if (source.viscosity_contrast != 1) l.dual = basis.synthesize(source.densities.dual).values;
-  l.directions.resize(basis.points(), 3);
+  return l;
+}
+
+/// Parameters of a grid's points, unit vectors.
+Matrix grid_directions(const Basis& basis) {
+  Matrix s(basis.points(), 3);
   for (Eigen::Index k = 0; k < basis.points(); ++k) {
     const double t = basis.theta()[k % basis.latitudes()], f = basis.phi()[k / basis.latitudes()];
-    l.directions.row(k) << std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t);
+    s.row(k) << std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t);
   }
-  return l;
+  return s;
 }
 
 /// Nearest source point and its distance.
@@ -44,18 +49,6 @@ std::pair<Eigen::Index, double> nearest_source(const Sources& s, const Vec3& x) 
   return {k, std::sqrt(square)};
 }
 
-/// Solid angle over 4 pi, by the smooth rule: right to rounding where that rule is.
-bool holds(const Sources& s, const Vec3& x) {
-  if ((x - s.low).minCoeff() < 0 || (s.high - x).minCoeff() < 0) return false;
-  double sum = 0;
-  for (Eigen::Index k = 0; k < s.points.rows(); ++k) {
-    const Vec3 r = s.points.row(k).transpose() - x;
-    const double square = r.squaredNorm();
-    sum += s.normals.row(k).dot(r) / (square * std::sqrt(square));
-  }
-  return sum > 2 * pi;
-}
-
 /// What one membrane contributes at one point.
 struct Contribution {
   Vec3 velocity = Vec3::Zero();
@@ -64,15 +57,13 @@ struct Contribution {
   bool on_membrane = false;  ///< velocity is then the membrane's own
 };
 
-Contribution near_contribution(const FlowSource& source, const Vec3& x, const FlowFieldOptions& options) {
+Contribution near_contribution(const FlowSource& source, const Vec3& x, const Vec3& start, const FlowFieldOptions& options) {
   Contribution c;
-  const FlowSource::Level& finest = source.levels.back();
-  const Eigen::Index start = nearest_source(finest.sources, x).first;
-  const NearestPoint nearest = nearest_point(source.position, x, finest.directions.row(start).transpose());
+  const NearestPoint nearest = nearest_point(source.position, x, start);
   c.distance = nearest.distance;
   c.within = nearest.inside;
   constexpr double touching = 1e-7;  // of the vesicle's size: nearer, the velocity is the membrane's to all digits wanted
-  if (nearest.distance < touching * (finest.sources.high - finest.sources.low).norm()) {
+  if (nearest.distance < touching * (source.levels[0].sources.high - source.levels[0].sources.low).norm()) {
     c.on_membrane = true;
     c.velocity = sample_points(source.velocity, nearest.parameter.transpose()).row(0).transpose();
     return c;
@@ -86,22 +77,22 @@ Contribution near_contribution(const FlowSource& source, const Vec3& x, const Fl
 /// Contributions of one membrane at all points: those that see it on one grid are summed together.
 std::vector<Contribution> contributions(const FlowSource& source, const Matrix& points, const FlowFieldOptions& options) {
   std::vector<Contribution> all(points.rows());
-  std::array<std::vector<Eigen::Index>, 3> lists;
+  std::array<std::vector<Eigen::Index>, std::tuple_size_v<decltype(FlowSource::levels)>> lists;
+  const Sources& coarse = source.levels[0].sources;
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     const Vec3 x = points.row(k).transpose();
-    bool far = false;
-    for (std::size_t l = 0; l < source.levels.size() && !far; ++l) {
-      const Sources& s = source.levels[l].sources;
-      const auto [at, away] = nearest_source(s, x);
-      // Between source points the membrane may come nearer by less than the sagitta of a spacing; half of one is plenty.
-      const double distance = away - 0.5 * s.spacing[at];
-      if (distance < options.spacings * s.spacing[at]) continue;
-      far = true;
-      lists[l].push_back(k);
-      all[k].distance = distance;
-      all[k].within = holds(s, x);
+    const auto [at, away] = nearest_source(coarse, x);
+    // The membrane may come nearer between source points: the nearest is at most half a diagonal of a cell off.
+    const double spacing = coarse.spacing[at], distance = away - 0.71 * spacing;
+    std::size_t l = 0;
+    while (l < lists.size() && distance < options.spacings * std::ldexp(spacing, -static_cast<int>(l))) ++l;
+    if (l == lists.size()) {
+      all[k] = near_contribution(source, x, source.directions.row(at).transpose(), options);
+      continue;
     }
-    if (!far) all[k] = near_contribution(source, x, options);
+    lists[l].push_back(k);
+    all[k].distance = distance;
+    all[k].within = (x - coarse.points.row(at).transpose()).dot(coarse.normals.row(at)) < 0;
   }
   for (std::size_t l = 0; l < lists.size(); ++l) {
     if (lists[l].empty()) continue;
@@ -148,6 +139,7 @@ FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const
     source.densities.dual = {p, (1 - source.viscosity_contrast) * v.velocity.values};
     source.rotation = &plans.rotation(p);
     const int coarse = std::max(2 * p, 24);
+    source.directions = grid_directions(plans.basis(p, coarse));
     parallel_for(int(source.levels.size()), [&](int k) { source.levels[k] = level(plans, source, coarse << k); });
   }
   return field;

@@ -92,6 +92,35 @@ TEST_CASE("a bent shape that the plane cuts twice gives two closed curves") {
   CHECK(right > 1);
 }
 
+TEST_CASE("a plane off the axis of a biconcave disc, across its dimples, cuts two closed curves") {
+  // Perpendicular to the axis at a height above the dimple's bottom: a ring, whose inner edge runs the other way.
+  CutPlane across;
+  across.normal = Vec3::UnitZ();
+  across.right = Vec3::UnitX();
+  across.up = -Vec3::UnitY();
+  across.origin = {0.05, -0.02, 0.25};
+  const std::vector<ClosedCurve> ring = render::cut(surfaces::disc(turn(0, {0, 0, 1})).position, across);
+  REQUIRE(ring.size() == 2);
+  CHECK(render::length(ring[0]) > 1.3 * render::length(ring[1]));
+  CHECK(render::enclosed_area(ring[0]) * render::enclosed_area(ring[1]) < 0);
+  // Tilted by a little: still two, of other shapes. Curves are circles in the first case.
+  for (Eigen::Index i = 0; i < ring[1].points.rows(); ++i) {
+    const double r = std::hypot(ring[1].points(i, 0) + 0.05, ring[1].points(i, 1) + 0.02);
+    CHECK(r == Approx(std::hypot(ring[1].points(0, 0) + 0.05, ring[1].points(0, 1) + 0.02)).epsilon(1e-9));
+  }
+  CHECK(render::cut(surfaces::disc(turn(4, {0, 1, 0})).position, across).size() == 2);
+}
+
+TEST_CASE("points of a section lie where their parameters say") {
+  const auto x = surfaces::disc(turn(20, {0, 1, 0}), {0.3, 0, -1}).position;
+  CutPlane plane;
+  plane.origin = {0, 0.2, 0};
+  for (const ClosedCurve& curve : render::cut(x, plane)) {
+    const sim::Matrix p = sim::sample_points(x, curve.directions);
+    CHECK((p.col(0) - curve.points.col(0)).norm() + (p.col(2) - curve.points.col(1)).norm() < 1e-10);
+  }
+}
+
 TEST_CASE("a plane that misses the vesicle gives no curve") {
   CutPlane plane;
   plane.origin = {0, 1.2, 0};

@@ -1,0 +1,27 @@
+// The flow of a saved state in a plane, made ready to be drawn: streamlines and speeds. Between the membranes the velocity is
+// interpolated from nets of samples; beside a membrane, across which its slope jumps, every value is computed.
+#pragma once
+
+#include "render/figure.h"
+#include "sim/parameters.h"
+#include "sim/plans.h"
+
+namespace app {
+
+struct FlowRequest {
+  render::CutPlane plane;
+  render::Range x, y;        ///< window in the plane, lengths of the scene
+  sim::Vec3 frame_velocity = sim::Vec3::Zero();  ///< subtracted everywhere
+  double spacing = 0.2;      ///< of the lines, length
+  bool with_speed = true;    ///< also speeds on a net, as a background
+};
+
+render::FlowPicture flow_picture(sim::Plans&, const sim::Scene&, const sim::State&, const FlowRequest&);
+
+/// Mean of the velocities of the vesicles' centroids.
+sim::Vec3 frame_velocity(sim::Plans&, const sim::State&);
+
+/// The request of a figure: plane, window round the sections, frame. `length`: the area radius.
+FlowRequest flow_request(sim::Plans&, const sim::State&, const render::FigureParameters&, double length);
+
+}  // namespace app

@@ -1,0 +1,170 @@
+#include "tank_treading.h"
+
+#include "render/section.h"
+#include "sim/basis.h"
+#include "sim/diagnostics.h"
+#include "sim/legendre.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace app {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Reduced volume of a prolate spheroid of aspect ratio r.
+double prolate_volume(double r) {
+  const double e = std::sqrt(1 - 1 / (r * r)), area = 2 * pi * (1 + r * std::asin(e) / e), volume = 4 * pi / 3 * r;
+  return volume / (4 * pi / 3 * std::pow(area / (4 * pi), 1.5));
+}
+
+double prolate_ratio(double nu) {
+  double low = 1 + 1e-9, high = 30;
+  for (int k = 0; k < 100; ++k) {
+    const double middle = (low + high) / 2;
+    (prolate_volume(middle) > nu ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Contrasts that occur, in order.
+std::vector<double> contrasts_of(const std::vector<SteadyPoint>& points) {
+  std::vector<double> all;
+  for (const SteadyPoint& p : points) all.push_back(p.viscosity_contrast);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+}  // namespace
+
+const std::vector<LiteraturePoint>& literature_angles() {
+  static const std::vector<LiteraturePoint> points{
+      {1, 0.702, 0.087, 0.002, "Kraus et al. 1996"},     {1, 0.898, 0.155, 0.002, "Kraus et al. 1996"},
+      {1, 0.974, 0.206, 0.002, "Kraus et al. 1996"},     {2.7, 0.960, 0.152, 0.002, "Zhao, Shaqfeh 2009"},
+      {2.7, 0.901, 0.110, 0.002, "Zhao, Shaqfeh 2009"},  {5.6, 0.980, 0.131, 0.002, "Zhao, Shaqfeh 2009"},
+      {5.6, 0.939, 0.068, 0.002, "Zhao, Shaqfeh 2009"}};
+  return points;
+}
+
+const std::vector<LiteraturePoint>& literature_frequencies() {
+  static const std::vector<LiteraturePoint> points{{1, 0.80, 0.33, 0.02, "Kraus et al. 1996"},
+                                                   {1, 0.95, 0.454, 0.009, "Kraus et al. 1996"}};
+  return points;
+}
+
+SteadyPoint steady_point(sim::Plans& plans, const sim::VesicleState& v, double viscosity_contrast, double rate) {
+  const sim::VesicleMeasures m = sim::measure(plans, v, 1, 1);
+  SteadyPoint point{m.reduced_volume, viscosity_contrast, m.inclination_deg / 180, 0};
+  render::CutPlane plane;
+  plane.origin = m.center;
+  const std::vector<render::ClosedCurve> curves = render::cut(v.position, plane, 96);
+  if (curves.empty()) return point;
+  const render::ClosedCurve& c = curves.front();
+  const sim::Matrix u = sim::sample_points(v.velocity, c.directions);
+  const Eigen::Index count = c.points.rows();
+  double period = 0;
+  const auto along = [&](Eigen::Index i) { return u(i, 0) * c.tangents(i, 0) + u(i, 2) * c.tangents(i, 1); };
+  for (Eigen::Index i = 0; i < count; ++i) {  // chords and harmonic means: right to second order in a spacing of 1/200
+    const Eigen::Index j = (i + 1) % count;
+    period += (c.points.row(j) - c.points.row(i)).norm() * (1 / std::abs(along(i)) + 1 / std::abs(along(j))) / 2;
+  }
+  point.frequency = 2 * pi / period / rate;
+  return point;
+}
+
+SteadyPoint keller_skalak(double nu, double lambda) {
+  const double r = prolate_ratio(nu), a1 = std::pow(r, 2.0 / 3), a2 = std::pow(r, -1.0 / 3);
+  // g = int_0^inf (a1^2 + s)^(-3/2) (a2^2 + s)^(-2) ds with s = x / (1 - x).
+  const sim::GaussLegendre rule = sim::gauss_legendre(80);
+  double g = 0;
+  for (Eigen::Index k = 0; k < rule.theta.size(); ++k) {
+    const double x = (1 + std::cos(rule.theta[k])) / 2, s = x / (1 - x);
+    g += rule.weight[k] / 2 / ((1 - x) * (1 - x)) * std::pow(a1 * a1 + s, -1.5) * std::pow(a2 * a2 + s, -2);
+  }
+  const double f2 = g * (a1 * a1 + a2 * a2) / 2, f0 = 2 / (r + 1 / r), f1 = (r - 1 / r) / 2, q = 1 + f2 * (lambda - 1);
+  const double b = f0 * (f1 + 1 / (f1 * q));
+  if (!(b > 1)) return {nu, lambda, std::nan(""), 0};
+  return {nu, lambda, std::acos(1 / b) / 2 / pi, 1 / b / (2 * f1 * q)};
+}
+
+std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& points) {
+  std::vector<double> contrasts = contrasts_of(points);
+  render::Plot angle{{"reduced volume ν", render::Scale::linear, true, true}, {"inclination θ / π", render::Scale::linear, true, true},
+                     {}, {}, {}, {}};
+  render::Plot frequency = angle;
+  frequency.y.label = "frequency ω / γ̇";
+  double least = 0.7;
+  for (const SteadyPoint& p : points) least = std::min(least, p.reduced_volume);
+  least = std::floor(least * 20 - 1e-9) / 20;
+  angle.x_range = frequency.x_range = render::Range{least, 1};
+  angle.y_range = render::Range{0, 0.26};
+  frequency.y_range = render::Range{0, 0.55};
+  angle.legend = render::Corner::upper_left;
+  frequency.legend = render::Corner::lower_right;
+  const auto literature = [](const std::vector<LiteraturePoint>& all, double contrast, std::size_t colour, render::Plot& plot) {
+    for (const LiteraturePoint& l : all) {
+      if (l.viscosity_contrast != contrast) continue;
+      render::Curve* curve = nullptr;
+      const std::string name = fmt::format("{}, λ = {}", l.source, contrast);
+      for (render::Curve& c : plot.curves)
+        if (c.name == name) curve = &c;
+      if (!curve) {
+        plot.curves.emplace_back();
+        curve = &plot.curves.back();
+        curve->name = name;
+        curve->colour = colour;
+        curve->line = false;
+        curve->marker = render::Marker::diamond;
+      }
+      curve->x.push_back(l.reduced_volume);
+      curve->y.push_back(l.value);
+      curve->error.push_back(l.error);
+    }
+  };
+  for (std::size_t k = 0; k < contrasts.size(); ++k) {
+    render::Curve theory_angle, theory_frequency;
+    for (double nu = least; nu < 0.9991; nu += 0.002) {
+      const SteadyPoint t = keller_skalak(nu, contrasts[k]);
+      theory_angle.x.push_back(nu);
+      theory_angle.y.push_back(t.angle);
+      theory_frequency.x.push_back(nu);
+      theory_frequency.y.push_back(t.frequency > 0 ? t.frequency : std::nan(""));
+    }
+    theory_angle.colour = theory_frequency.colour = k;
+    theory_angle.dashed = theory_frequency.dashed = true;
+    if (k == 0) theory_angle.name = theory_frequency.name = "Keller, Skalak 1982";
+    angle.curves.push_back(theory_angle);
+    frequency.curves.push_back(theory_frequency);
+  }
+  for (std::size_t k = 0; k < contrasts.size(); ++k) {
+    render::Curve ours_angle;
+    ours_angle.name = fmt::format("Tanktread, λ = {}", contrasts[k]);
+    ours_angle.colour = k;
+    ours_angle.marker = render::Marker::ring;
+    std::vector<SteadyPoint> own;
+    for (const SteadyPoint& p : points)
+      if (p.viscosity_contrast == contrasts[k]) own.push_back(p);
+    std::sort(own.begin(), own.end(), [](const SteadyPoint& a, const SteadyPoint& b) { return a.reduced_volume < b.reduced_volume; });
+    ours_angle.line = own.size() > 2;
+    render::Curve ours_frequency = ours_angle;
+    for (const SteadyPoint& p : own) {
+      ours_angle.x.push_back(p.reduced_volume);
+      ours_angle.y.push_back(p.angle);
+      ours_frequency.x.push_back(p.reduced_volume);
+      ours_frequency.y.push_back(p.frequency);
+    }
+    angle.curves.push_back(ours_angle);
+    frequency.curves.push_back(ours_frequency);
+    literature(literature_angles(), contrasts[k], k, angle);
+    literature(literature_frequencies(), contrasts[k], k, frequency);
+  }
+  return {angle, frequency};
+}
+
+}  // namespace app
