@@ -102,7 +102,7 @@ std::string laid_note(const ViewPanel& p, double time) {
   if (p.view.lines != "material" || !p.view.time_stamp) return {};
   for (const double laid : p.laid)
     if (std::abs(time - laid) <= p.notice)
-      return fmt::format("lines and dots {} at {}", time < laid ? "will be laid anew" : "were laid anew",
+      return fmt::format("lines {} at {}", time < laid ? "will be laid anew" : "were laid anew",
                          time_caption(p.source.settings.scene, laid));
   return {};
 }

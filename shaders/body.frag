@@ -48,14 +48,14 @@ void main() {
 #endif
 #ifdef CUTAWAY
   if (!front) {  // the inside: duller, without shine
-    albedo = 0.66 * mix(albedo, vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722))), 0.25);
+    albedo = 0.78 * mix(albedo, vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722))), 0.25);
     gloss = 0.25;
   }
 #endif
 #ifdef GHOST
   float grazing = 1.0 - clamp(dot(n, v), 0.0, 1.0);
   float alpha = mix(u_opacity, max(u_opacity, 0.80), grazing * grazing * sqrt(grazing));
-  float drawn = max(u_opacity, front ? 0.90 : 0.60);  // alpha of what is painted on the membrane
+  float drawn = max(u_opacity, front ? 0.92 : 0.45);  // alpha of what is painted on the membrane
 #endif
 #ifdef FIELD
   float place = 255.0 * clamp(v_scalar, 0.0, 1.0);
@@ -154,6 +154,7 @@ void main() {
 #endif
 #ifdef GHOST
   alpha = mix(alpha, max(alpha, front ? 1.0 : drawn), contour);
+  alpha *= smoothstep(-0.3, 1.3, to_contour);  // the outer edge is that of a polygon: a shade between
 #endif
 #endif
 #ifdef GHOST
