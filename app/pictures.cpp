@@ -47,6 +47,7 @@ render::FlowArrows arrows_of(const ViewPanel& p, const render::StateSummary& sum
   arrows.points = render::arrow_points(p.framing, p.framing.moment(summary));
   arrows.velocities = sim::background_velocity(p.source.settings.scene.flows, summary.time, arrows.points);
   arrows.reference_speed = p.arrow_speed;
+  arrows.shown = render::arrows_shown(p.framing, p.framing.moment(summary));
   return arrows;
 }
 

@@ -165,6 +165,9 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
     for (const KeyFrameParameters& k : key_frames) framing.keys.push_back({k.time, k.azimuth, k.elevation, k.zoom});
   std::stable_sort(framing.keys.begin(), framing.keys.end(),
                    [](const CameraKey& a, const CameraKey& b) { return a.time < b.time; });
+  for (std::size_t k = 1; k < framing.keys.size(); ++k)
+    if (framing.keys[k].time == framing.keys[k - 1].time)
+      throw std::invalid_argument(fmt::format("two key frames have the same time, {:.6g}", framing.keys[k].time));
   const std::size_t vesicles = states[0].centroids.size();
   if (view.follow == "vesicle") {
     framing.vesicle = view.follow_vesicle;
@@ -300,7 +303,7 @@ glm::dvec2 Camera::picture_place(const dvec3& point) const {
 sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
   const Camera camera = make_camera(framing, moment);
   // The coordinate plane that faces the viewer most, through the target: there the velocity is what it seems to be.
-  const ViewAxes axes = framing.axes_at(moment.time);
+  const ViewAxes& axes = framing.axes;  // of a camera that turns: its first view, so that the plane does not change
   const auto leading = [](const dvec3& v) {
     const dvec3 a = glm::abs(v);
     return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
@@ -335,6 +338,15 @@ sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
   sim::Matrix result(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t k = 0; k < points.size(); ++k) result.row(static_cast<Eigen::Index>(k)) = to_sim(points[k]).transpose();
   return result;
+}
+
+double arrows_shown(const Framing& framing, const Moment& moment) {
+  if (!framing.turns()) return 1;
+  const auto leading = [](const dvec3& v) {
+    const dvec3 a = glm::abs(v);
+    return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+  };
+  return glm::smoothstep(0.2, 0.45, std::abs(framing.axes_at(moment.time).back[leading(framing.axes.back)]));
 }
 
 int panel_columns(int count, int width, int height) {

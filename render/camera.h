@@ -103,6 +103,9 @@ Camera make_camera(const Framing& framing, const Moment& moment);
 /// of the captions. count x 3. The net is fixed in space under a following camera, so that arrows pass by.
 sim::Matrix arrow_points(const Framing& framing, const Moment& moment);
 
+/// 1, or less where a camera that turns sees the plane of the arrows too obliquely; 0: edge on.
+double arrows_shown(const Framing& framing, const Moment& moment);
+
 /// Columns of the most even division of a picture into `count` panels.
 int panel_columns(int count, int width, int height);
 

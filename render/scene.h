@@ -39,6 +39,7 @@ struct FlowArrows {
   sim::Matrix velocities;  ///< count x 3
   double reference_speed =
       0;  ///< drawn at full length; 0: the fastest of `velocities`. One value a movie keeps arrows steady.
+  double shown = 1;  ///< 0: faded into the ground
 };
 
 /// UTF-8; `_{...}` and `^{...}` lower and raise. Empty: not drawn.

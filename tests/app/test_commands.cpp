@@ -419,3 +419,31 @@ TEST_CASE("a full disk ends with one sentence; frames made before are kept, none
   CHECK_FALSE(fs::exists(desk / "a/frames/000001.png"));
   for (const auto& entry : fs::directory_iterator(desk / "a/frames")) CHECK(entry.path().extension() == ".png");
 }
+
+TEST_CASE("before and after material lines are laid anew the pictures say so", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  const sim::TrajectoryReader reader(desk.file("t.h5"));
+  const auto changed = [&](std::int64_t k) {
+    sim::State state = reader.state(k);
+    if (state.time > 0.29) {
+      state.vesicles[0].labels_laid = 1;
+      state.vesicles[0].labels_laid_time = 0.3;
+    }
+    return state;
+  };
+  {
+    sim::TrajectoryWriter writer =
+        sim::TrajectoryWriter::create(desk.file("u.h5"), reader.layout(), reader.header(), changed(0), reader.resume_payload());
+    for (std::int64_t k = 1; k < reader.count(); ++k) writer.append(changed(k));
+  }
+  // 1.2 seconds at half a frame a second and 0.1 a frame: 0.06 before and after.
+  for (const auto& [time, told] : {std::pair{"0.1", false}, std::pair{"0.26", true}, std::pair{"0.34", true}, std::pair{"0.42", false}}) {
+    INFO(time);
+    for (const char* name : {"t", "u"})
+      REQUIRE(desk({"render", desk.file(std::string(name) + ".h5"), "--time", time, "-o", desk.file(std::string(name) + ".png"),
+                    "--size", "320x180", "--set", "movie.frame_rate=0.5"})
+                  .status == 0);
+    CHECK((desk({"compare", desk.file("t.png"), desk.file("u.png")}).status != 0) == told);
+  }
+}

@@ -159,6 +159,26 @@ TEST_CASE("an orbiting camera goes round the z axis at its rate and keeps everyt
   }
 }
 
+TEST_CASE("arrows keep their plane while the camera goes round, and fade where they are seen edge on") {
+  render::ViewParameters view;
+  view.orbit = 9;
+  const auto states = pair_at_rest();
+  const render::Framing framing = render::frame_trajectory(states, view);
+  CHECK(render::arrows_shown(framing, {glm::dvec3(0), 0}) == 1);
+  CHECK(render::arrows_shown(framing, {glm::dvec3(0), 10}) == 0);  // 90 degrees
+  for (const double time : {0.0, 3.0, 6.0}) {
+    const sim::Matrix points = render::arrow_points(framing, {glm::dvec3(0), time});
+    CHECK(points.rows() > 0);
+    CHECK((points.col(1).array() - points(0, 1)).abs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("two key frames at one time are refused") {
+  const std::vector<render::KeyFrameParameters> keys{{1, 0, 0, 1}, {1, 90, 0, 1}};
+  const auto states = pair_at_rest();
+  CHECK_THAT(support::message_of([&] { render::frame_trajectory(states, {}, keys); }), Catch::Contains("same time"));
+}
+
 TEST_CASE("key frames are met, with rest at the ends and without overshoot between") {
   const std::vector<render::CameraKey> keys{{1, 0, 0, 1}, {3, 90, 20, 2}, {4, 100, 20, 1}};
   for (const render::CameraKey& key : keys) {
