@@ -144,9 +144,14 @@ constexpr OptionRow option_rows[] = {
                                        "of numbers and legends, points")
            ->type_name("PT");
      }},
-    {"csv",
+    {"export",
      [](CLI::App& app, Options& o) {
-       app.add_option("--csv", o.csv, "write comma-separated values; - is standard output")->required();
+       app.add_option("--csv", o.csv, "write a row per saved state and vesicle; - is standard output")->type_name("FILE");
+       app.add_option("--vtk", o.vtk, "write XML PolyData and a .pvd series")->type_name("DIR");
+       app.add_option("--ply", o.ply, "write a PLY mesh per saved state and vesicle")->type_name("DIR");
+       app.add_option("--latitudes", o.latitudes, "of the meshes; twice as many longitudes")
+           ->check(CLI::Range(4, 512))
+           ->capture_default_str();
      }},
     {"quick",
      [](CLI::App& app, Options& o) { app.add_flag("--quick", o.quick, "low orders and short times: does it run at all"); }},

@@ -15,7 +15,7 @@ int simulate(const Options&);
 int render(const Options&);
 int figure(const Options&);
 int info(const Options&);
-int export_table(const Options&);
+int export_states(const Options&);
 int compare(const Options&);  ///< 0 same, 1 different, 2 could not compare
 int list(const Options&);
 int reproduce(const Options&);
@@ -39,7 +39,8 @@ inline constexpr Command commands[] = {
     {"figure", "a figure as PNG, SVG and PDF, with its numbers as CSV", "NAME", "TRAJECTORY", true,
      "output set quiet gl shader-dir figure-size theme font-size", figure},
     {"info", "what a trajectory, a scene or a frame holds", "", "FILE", false, "set", info},
-    {"export", "a table of measures: one row per saved state and vesicle", "", "TRAJECTORY", false, "csv", export_table},
+    {"export", "saved states for other programs: a table of measures, meshes for ParaView (VTK) and Blender (PLY)", "",
+     "TRAJECTORY", false, "export quiet", export_states},
     {"compare", "pictures against expected ones, a pair of files or of folders: status 0 same, 1 different, 2 neither",
      "EXPECTED", "ACTUAL", false, "thresholds ignore json junit html diff update quiet", compare},
     {"reproduce", "recomputes a table or figure of the method's paper; without ITEM, tells which", "ITEM", "", false,

@@ -2,7 +2,10 @@
 #include "catalogues.h"
 #include "commands.h"
 #include "csv.h"
+#include "interrupt.h"
+#include "mesh_export.h"
 #include "output.h"
+#include "progress.h"
 #include "reference.h"
 #include "scene_file.h"
 #include "summary.h"
@@ -28,9 +31,29 @@ int info(const Options& options) {
   return 0;
 }
 
-int export_table(const Options& options) {
+int export_states(const Options& options) {
+  if (options.csv.empty() && options.vtk.empty() && options.ply.empty())
+    throw std::runtime_error("say what to write: --csv FILE, --vtk DIR or --ply DIR");
   const sim::TrajectoryReader trajectory(options.inputs.front());
-  write_whole_file(options.csv, csv_text(trajectory));
+  if (!options.csv.empty()) write_whole_file(options.csv, csv_text(trajectory));
+  struct Kind {
+    const std::filesystem::path& folder;
+    std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const ExportProgress&);
+  };
+  for (const auto& [folder, write] : {Kind{options.vtk, export_vtk}, Kind{options.ply, export_ply}}) {
+    if (folder.empty()) continue;
+    Progress progress("exporting", options.quiet);
+    const std::int64_t states = write(trajectory, {folder, options.latitudes}, [&](std::int64_t k, std::int64_t count) {
+      progress.show(static_cast<double>(k) / static_cast<double>(count), fmt::format("state {} of {}", k + 1, count));
+      return !interrupted();
+    });
+    progress.clear();
+    if (states < trajectory.count()) {
+      fmt::print(stderr, "tanktread: interrupted; {} of {} states are in '{}'\n", states, trajectory.count(), folder.string());
+      return interrupted_status;
+    }
+    if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", folder.string(), states);
+  }
   return 0;
 }
 

@@ -24,9 +24,11 @@ std::int64_t count_of(const std::vector<Comparison>& all, Verdict verdict) {
 
 bool was_compared(const Comparison& c) { return c.difference.compared > 0; }
 
+/// What the objections have not said already.
 std::string measures(const Comparison& c) {
   const render::ImageDifference& d = c.difference;
-  std::string text = fmt::format("largest {}, rmse {:.3g}", d.maximum, d.rmse);
+  std::string text = fmt::format("largest {}", d.maximum);
+  if (c.detail.find("rmse") == std::string::npos) text += fmt::format(", rmse {:.3g}", d.rmse);
   if (d.flip_mean) text += fmt::format(", FLIP mean {:.3g}, largest {:.3g}", *d.flip_mean, *d.flip_max);
   if (d.above > 0) text += fmt::format(", at x {} to {}, y {} to {}", d.left, d.right - 1, d.top, d.bottom - 1);
   return text;
@@ -76,19 +78,6 @@ std::string markup_text(std::string_view text) {
       default: return static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? std::string("?") : std::string();
     }
   });
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t word = 0;
-    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? digits[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
 }
 
 std::string figure(std::string_view role, std::string_view caption, std::string_view bytes) {

@@ -23,6 +23,8 @@ struct Options {
   int shard = 0, shards = 1;                   ///< --shard 0/4: frames 0, 4, 8, ...
   std::filesystem::path csv;                   ///< --csv; "-": standard output
   bool dry_run = false, quiet = false, resume = false, force = false, markdown = false;
+  std::filesystem::path vtk, ply;              ///< --vtk DIR, --ply DIR
+  int latitudes = 64;                          ///< of exported meshes
   std::string preset = "default";              ///< of `compare`
   std::vector<std::pair<std::string, double>> limits;  ///< its thresholds, as given
   std::vector<std::string> ignore;             ///< --ignore X,Y,WxH

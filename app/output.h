@@ -5,12 +5,15 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace app {
 
 /// Writes beside the name, then renames. "-" is standard output.
 void write_whole_file(const std::filesystem::path&, const std::string& text);
 std::string read_whole_file(const std::filesystem::path&);
+
+std::string base64(std::string_view bytes);
 
 /// Removes 000000.png, 000001.png, ... from number `first` on; nothing else.
 void remove_frames(const std::filesystem::path& folder, std::int64_t first);

@@ -199,7 +199,7 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
                      const std::vector<std::string>& overrides, SceneUse use) {
   toml::table root;
   try {
-    root = toml::parse(text, name);
+    root = parse_toml(text, name);
   } catch (const toml::parse_error& error) {
     fail_at(error.source(), error.description());
   }
@@ -216,7 +216,7 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
     read_value(sim::Parameter{.name = "title", .unit = "", .meaning = "title of the scene"}, *title,
                settings.scene.title);
   visit_sections(settings, Reader{root, name, folder, use});
-  if (!settings.scene.placements.empty()) try {
+  if (use == SceneUse::simulate && !settings.scene.placements.empty()) try {
       settings.scene = sim::placed(std::move(settings.scene));
     } catch (const std::invalid_argument& error) {
       fail_at(root.get("placement")->source(), error.what());
@@ -230,6 +230,9 @@ Settings read_scene(const std::filesystem::path& path, const std::vector<std::st
     throw std::runtime_error(fmt::format("{}: there is no such scene file", path.string()));
   if (!std::filesystem::is_regular_file(path, error))
     throw std::runtime_error(fmt::format("{}: is not a file", path.string()));
+  constexpr std::uintmax_t largest = 64 << 20;  // some hundred thousand vesicles
+  if (std::filesystem::file_size(path, error) > largest && !error)
+    throw std::runtime_error(fmt::format("{}: is too large for a scene", path.string()));
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
   const std::string text{std::istreambuf_iterator<char>(in), {}};

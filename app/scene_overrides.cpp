@@ -1,5 +1,7 @@
 #include "scene_overrides.h"
 
+#include "scene_values.h"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -11,7 +13,7 @@ namespace {
 /// The value, with the override as its source, so that a later complaint names it.
 toml::table parse_value(const std::string& value, const std::string& source) {
   try {
-    return toml::parse("value = " + value, source);
+    return parse_toml("value = " + value, source);
   } catch (const toml::parse_error& error) {
     if (value.find_first_of("\"'[]{}\n#=") != std::string::npos)
       throw std::runtime_error(fmt::format("{}: {}", source, error.description()));

@@ -4,9 +4,57 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace app {
+
+namespace {
+
+/// Where the text in quotes that begins at `at` ends: behind its last quote, or where it is broken off.
+std::size_t end_of_quotes(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const std::string three(3, quote);
+  const bool long_text = text.substr(at, 3) == three;
+  for (at += long_text ? 3 : 1; at < text.size(); ++at) {
+    if (text[at] == '\\' && quote == '"') ++at;
+    else if (!long_text && text[at] == '\n') return at;
+    else if (!long_text && text[at] == quote) return at + 1;
+    else if (long_text && text.substr(at, 3) == three) {
+      at += 3;
+      for (int more = 0; more < 2 && at < text.size() && text[at] == quote; ++more) ++at;  // they belong to the text
+      return at;
+    }
+  }
+  return text.size();
+}
+
+}  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& name) {
+  constexpr int most_parts = 200;
+  int dots = 0;
+  const auto refuse = [&](std::size_t at, std::string_view sentence) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    throw std::runtime_error(fmt::format("{}:{}: {}", name, line, sentence));
+  };
+  for (std::size_t at = text.starts_with("\xef\xbb\xbf") ? 3 : 0; at < text.size();) {
+    const char c = text[at];
+    if (c == '"' || c == '\'') {
+      at = end_of_quotes(text, at);
+      continue;
+    }
+    if (c == '#') {
+      at = std::min(text.find('\n', at), text.size());
+      continue;
+    }
+    if (static_cast<unsigned char>(c) >= 0x80) refuse(at, "a letter beyond ASCII outside of a text in quotes");
+    if (c == '.' && ++dots == most_parts) refuse(at, fmt::format("a key of more than {} parts", most_parts));
+    if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) dots = 0;
+    ++at;
+  }
+  return toml::parse(text, name);
+}
 
 void fail_at(const toml::source_region& where, std::string_view sentence) {
   const std::string name = where.path ? *where.path : std::string("scene");

@@ -7,6 +7,11 @@
 
 namespace app {
 
+/// toml::parse for text that may be anything. What the parser cannot bear is refused first, as std::runtime_error: keys of
+/// more than 200 parts, one recursion each, and letters beyond ASCII outside of texts and comments. Other errors are
+/// toml::parse_error.
+toml::table parse_toml(std::string_view text, const std::string& name);
+
 /// A value that is not what its parameter allows, e.g. "'order' must be at least 2, at most 64, not 1"; else empty.
 std::string range_error(const sim::Parameter&, double value);
 /// The allowed range in words, e.g. "above 0, at most 1"; empty: any number.

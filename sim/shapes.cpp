@@ -153,10 +153,11 @@ Coefficients from_file(const VesicleParameters& v) {
       c.values.row(coefficient_index(int(row[0]), int(row[1]))) << row[2], row[3], row[4];
     return resized(c, v.order);
   }
+  // Before anything of that size is computed.
+  if (const std::size_t expected = std::size_t(grid_order + 1) * std::size_t(2 * grid_order + 2); rows.size() != expected)
+    throw std::invalid_argument(fmt::format("{}: a grid of order {} has {} rows, the file {}", v.file, grid_order, expected,
+                                            rows.size()));
   const Basis basis(std::min(v.order, grid_order), grid_order);
-  if (int(rows.size()) != basis.points())
-    throw std::invalid_argument(fmt::format("{}: a grid of order {} has {} rows, the file {}", v.file, grid_order,
-                                            basis.points(), rows.size()));
   Matrix samples(basis.points(), 3);
   for (int k = 0; k < basis.points(); ++k) samples.row(k) << rows[k][0], rows[k][1], rows[k][2];
   return resized(basis.analyze(samples), v.order);

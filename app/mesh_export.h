@@ -1,0 +1,39 @@
+// `tanktread export --vtk` and `--ply`: saved states as triangle meshes with fields, for ParaView and for Blender.
+#pragma once
+
+#include "sim/trajectory.h"
+
+#include <filesystem>
+#include <functional>
+
+namespace app {
+
+struct MeshExport {
+  std::filesystem::path folder;
+  int latitudes = 64;  ///< triangles a vesicle: 4 x latitudes x (latitudes - 1)
+};
+
+/// Fields of every point, in the order of the files.
+struct MeshField {
+  const char *name, *meaning;
+  int components;
+};
+inline constexpr MeshField mesh_fields[] = {
+    {"normal", "outward unit normal", 3},
+    {"velocity", "of the membrane", 3},
+    {"tension", "sigma", 1},
+    {"mean_curvature", "H, -1/R on a sphere", 1},
+    {"label", "material label: where the point started, a unit vector", 3},
+    {"vesicle", "number of the vesicle, from 0", 1},
+};
+
+/// Hears (state, of states) before each; false stops.
+using ExportProgress = std::function<bool(std::int64_t, std::int64_t)>;
+
+/// FOLDER/state-000000.vtp, ... with all vesicles, and FOLDER/series.pvd with the times. The series names whole files only;
+/// it is written last. Returns the number of states.
+std::int64_t export_vtk(const sim::TrajectoryReader&, const MeshExport&, const ExportProgress&);
+/// FOLDER/vesicle-0-000000.ply, ...: one file a vesicle and state, binary.
+std::int64_t export_ply(const sim::TrajectoryReader&, const MeshExport&, const ExportProgress&);
+
+}  // namespace app
