@@ -14,6 +14,9 @@ packages=(g++ cmake ninja-build pkg-config libeigen3-dev libfftw3-dev libhdf5-de
           libglm-dev libpng-dev libcairo2-dev libfreetype-dev libgl-dev libegl-dev fonts-dejavu-core libosmesa6 ffmpeg
           catch2 libbenchmark-dev python3 python3-h5py)
 
+# For the tests alone: fuzzing, and reading exported meshes back. Without them these tests are skipped.
+test_packages=(clang libclang-rt-14-dev python3-vtk9)
+
 usage() {
   sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
 }
@@ -71,6 +74,7 @@ case "${1:-}" in
     ;;
   test)
     shift
+    packages+=("${test_packages[@]}")
     install_packages
     build_target all
     ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "$@"

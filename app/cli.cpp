@@ -2,6 +2,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "message.h"
 #include "version.h"
 
 #include "render/compare.h"
@@ -15,6 +16,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <clocale>
 #include <cstdio>
 #include <system_error>
 
@@ -220,11 +222,6 @@ void check_command_word(int argc, char** argv) {
     throw std::runtime_error(fmt::format("'{}' is not a command{}", argv[1], sim::suggestion(argv[1], names)));
 }
 
-/// One line to stderr; a closed stderr is no reason to fail in another way.
-void complain(std::string_view sentence) noexcept {
-  std::fprintf(stderr, "tanktread: %.*s\n", int(sentence.size()), sentence.data());
-}
-
 /// Where a standard stream is closed, the next file opened would take its number, and with it what is meant for the stream.
 void occupy_standard_streams() {
   for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd)
@@ -241,6 +238,7 @@ void require_output() {
 
 int main(int argc, char** argv) {
   occupy_standard_streams();
+  std::setlocale(LC_ALL, "C");  // whatever a library has set: a decimal comma would end every number
   try {
     check_command_word(argc, argv);
     Options options;
@@ -253,7 +251,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& success) {
       return program.exit(success);
     } catch (const CLI::ParseError& error) {
-      complain(error.what());
+      tell(error.what());
       return 2;
     }
     render::parse_gl_choice(options.gl);
@@ -267,13 +265,13 @@ int main(int argc, char** argv) {
       }
     return 2;
   } catch (const std::bad_alloc&) {
-    complain("there is not enough memory");
+    tell("there is not enough memory");
   } catch (const std::system_error& error) {
     // The reader of a pipe has seen enough, as `head` does: nothing to complain of.
     if (error.code() == std::errc::broken_pipe) return 0;
-    complain(error.what());
+    tell(error.what());
   } catch (const std::exception& error) {
-    complain(error.what());
+    tell(error.what());
   }
   return 1;
 }

@@ -1,6 +1,7 @@
 // The command that compares pictures. Its exit status is its answer: 0 same, 1 different, 2 could not compare.
 #include "commands.h"
 #include "compare_report.h"
+#include "message.h"
 #include "output.h"
 #include "progress.h"
 
@@ -93,7 +94,7 @@ int compare(const Options& options) {
   try {
     return compare_as_asked(options);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "tanktread: %s\n", error.what());
+    tell(error.what());
     return 2;
   }
 }

@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "csv.h"
 #include "interrupt.h"
+#include "message.h"
 #include "mesh_export.h"
 #include "output.h"
 #include "progress.h"
@@ -49,7 +50,7 @@ int export_states(const Options& options) {
     });
     progress.clear();
     if (states < trajectory.count()) {
-      fmt::print(stderr, "tanktread: interrupted; {} of {} states are in '{}'\n", states, trajectory.count(), folder.string());
+      tell(fmt::format("interrupted; {} of {} states are in '{}'", states, trajectory.count(), folder.string()));
       return interrupted_status;
     }
     if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", folder.string(), states);

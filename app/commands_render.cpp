@@ -1,8 +1,10 @@
 // Commands that draw what has been simulated: render, figure.
 #include "commands.h"
 #include "figures.h"
+#include "folder_lock.h"
 #include "frames.h"
 #include "interrupt.h"
+#include "message.h"
 #include "movie_formats.h"
 #include "scene_file.h"
 #include "scene_text.h"
@@ -53,13 +55,14 @@ int render(const Options& options) {
   }
   const fs::path folder = options.output.empty() ? here : options.output;
   const auto stopped = [] {
-    fmt::print(stderr, "tanktread: interrupted; the same command continues\n");
+    tell("interrupted; the same command continues");
     return interrupted_status;
   };
   if (options.jobs > 1 && options.shards == 1) {
     check_movie(find_movie_format(settings.front().movie.format), settings.front().view.size[0], settings.front().view.size[1]);
     if (!draw_in_processes(options, folder)) return stopped();
   }
+  const FolderLock lock(folder, options.shard, options.shards);
   const FrameReport report = render_frames(sources, folder, options, true);
   if (report.interrupted) return stopped();
   if (!options.quiet) {
@@ -67,7 +70,7 @@ int render(const Options& options) {
     for (const fs::path& file : {report.movie, report.poster})
       if (!file.empty()) fmt::print("{}\n", file.string());
   }
-  if (!report.remark.empty()) fmt::print(stderr, "tanktread: {}\n", report.remark);
+  if (!report.remark.empty()) tell(report.remark);
   return report.movie_failed ? 1 : 0;
 }
 

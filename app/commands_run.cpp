@@ -1,8 +1,10 @@
 // Commands that simulate: run, simulate.
 #include "commands.h"
 #include "figures.h"
+#include "folder_lock.h"
 #include "frames.h"
 #include "interrupt.h"
+#include "message.h"
 #include "movie_formats.h"
 #include "output.h"
 #include "scene_file.h"
@@ -35,12 +37,12 @@ void say(const Options& options, const std::string& line) {
 int report_end(const SimulationReport& report, const fs::path& trajectory, const Options& options) {
   const std::string there = fmt::format("{}: {} states, to time {:.6g}", trajectory.string(), report.states, report.time);
   if (report.interrupted) {
-    fmt::print(stderr, "tanktread: interrupted; {}; the same command {}continues\n", there,
-               options.command == "simulate" ? "with --resume " : "");
+    tell(fmt::format("interrupted; {}; the same command {}continues", there,
+               options.command == "simulate" ? "with --resume " : ""));
     return interrupted_status;
   }
   if (!report.stopped.empty()) {
-    fmt::print(stderr, "tanktread: the simulation stopped: {}; {}\n", report.stopped, there);
+    tell(fmt::format("the simulation stopped: {}; {}", report.stopped, there));
     return 1;
   }
   say(options, there + (report.already_finished ? ", finished before" : ""));
@@ -74,6 +76,8 @@ int run(const Options& options) {
   // Before hours of simulation: can there be pictures at all?
   render::GlContext(render::parse_gl_choice(options.gl));
   check_movie(find_movie_format(settings.movie.format), settings.view.size[0], settings.view.size[1]);
+  inspect_folder(folder, settings, options.force);
+  FolderLock lock(folder);
   const FolderState state = claim_folder(folder, settings, options.force);
   const fs::path trajectory = folder / "trajectory.h5";
   SimulationReport report;
@@ -81,6 +85,7 @@ int run(const Options& options) {
     report = state != FolderState::fresh && fs::exists(trajectory) ? simulate_further(settings, trajectory, options)
                                                                    : simulate_new(settings, trajectory, options);
   } catch (...) {
+    lock.release();
     release_folder(folder);
     throw;
   }
@@ -91,15 +96,15 @@ int run(const Options& options) {
   const sim::TrajectoryReader reader(trajectory);
   const FrameReport frames = render_frames({{reader, settings}}, folder, options, state != FolderState::same);
   if (frames.interrupted) {
-    fmt::print(stderr, "tanktread: interrupted; {} frames are in '{}'; the same command continues\n",
-               frames.drawn + frames.kept, (folder / "frames").string());
+    tell(fmt::format("interrupted; {} frames are in '{}'; the same command continues",
+               frames.drawn + frames.kept, (folder / "frames").string()));
     return interrupted_status;
   }
   say(options, fmt::format("{}: {} frames drawn, {} kept", (folder / "frames").string(), frames.drawn, frames.kept));
   if (!frames.movie.empty()) say(options, frames.movie.string());
   if (!frames.poster.empty()) say(options, frames.poster.string());
   if (!frames.remark.empty())
-    fmt::print(stderr, "tanktread: {}; the frames are in '{}'\n", frames.remark, (folder / "frames").string());
+    tell(fmt::format("{}; the frames are in '{}'", frames.remark, (folder / "frames").string()));
   for (const render::FigureParameters& figure : settings.figures) {
     const fs::path stem = folder / (figure.out.empty() ? figure.kind : figure.out);
     for (const fs::path& file : draw_figure({{reader, settings, {}}}, figure, stem, options)) say(options, file.string());

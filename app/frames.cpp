@@ -10,6 +10,7 @@
 
 #include <stdlib.h>
 
+#include <charconv>
 #include <cmath>
 #include <future>
 
@@ -84,6 +85,19 @@ std::vector<Task> tasks_of(const Production& production, const std::vector<doubl
   return tasks;
 }
 
+/// Half-written frames of earlier processes that were killed, as far as they are ours to draw: ".000012.png.NUMBER.tmp".
+void remove_drafts(const fs::path& frames, const Options& options) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(frames, error)) {
+    const std::string name = entry.path().filename().string();
+    long long number = 0;
+    const auto [end, wrong] = std::from_chars(name.data() + !name.empty(), name.data() + name.size(), number);
+    if (name.starts_with('.') && wrong == std::errc() && std::string_view(end).starts_with(".png.") && name.ends_with(".tmp") &&
+        number % options.shards == options.shard)
+      fs::remove(entry.path(), error);
+  }
+}
+
 /// The movie under way; a failure of ffmpeg ends it, not the frames.
 struct Film {
   std::optional<MovieEncoder> encoder;
@@ -116,6 +130,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
   fs::create_directories(frames, error);
   if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", frames.string(), error.message()));
 
+  remove_drafts(frames, options);
   FrameReport report;
   const std::vector<Task> tasks = tasks_of(production, times, frames, options);
   for (const Task& task : tasks) report.kept += task.current;

@@ -19,6 +19,7 @@ void watch_signals() {
   std::signal(SIGINT, take_note);
   std::signal(SIGTERM, take_note);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() { return signalled != 0; }

@@ -6,7 +6,8 @@ namespace app {
 /// Exit status after an interruption.
 inline constexpr int interrupted_status = 130;
 
-/// From here on SIGINT and SIGTERM set a flag, and a closed pipe is a write error rather than the end.
+/// From here on SIGINT and SIGTERM set a flag, and a closed pipe or a file that may not grow is a write error
+/// rather than the end.
 void watch_signals();
 bool interrupted();
 

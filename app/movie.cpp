@@ -2,7 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,8 +11,6 @@
 #include <cstring>
 #include <utility>
 #include <vector>
-
-extern char** environ;
 
 namespace app {
 
@@ -31,6 +29,30 @@ std::vector<std::string> arguments(const MovieFormat& format, const std::filesys
   return words;
 }
 
+/// Of runs that were killed.
+void remove_drafts(const std::filesystem::path& path) {
+  const std::string start = path.filename().string() + ".";
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(start) && name.ends_with(".tmp")) std::filesystem::remove(entry.path(), error);
+  }
+}
+
+/// In the child, between fork and exec: nothing but system calls. An ffmpeg without its parent would go on with a movie that
+/// nobody waits for, so it dies with it.
+[[noreturn]] void become_ffmpeg(char* const* argv, int input, int trouble, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(127);
+  ::setpgid(0, 0);  // Ctrl-C is for us: we end the movie in order
+  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(number, SIG_DFL);
+  ::dup2(input, STDIN_FILENO);
+  ::execvp(argv[0], argv);
+  const int reason = errno;
+  [[maybe_unused]] const ssize_t told = ::write(trouble, &reason, sizeof reason);
+  ::_exit(127);
+}
+
 int wait_for(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
@@ -41,32 +63,30 @@ int wait_for(pid_t child) {
 
 MovieEncoder::MovieEncoder(const MovieFormat& format, const std::filesystem::path& path, int width, int height,
                            double frame_rate)
-    : path_(path), draft_(path.string() + ".tmp"), width_(width), height_(height) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
+    : path_(path), draft_(fmt::format("{}.{}.tmp", path.string(), ::getpid())), width_(width), height_(height) {
+  remove_drafts(path);
+  int frames[2], trouble[2];  // its input, and a line that closes when ffmpeg has been started
+  if (pipe2(frames, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
+  if (pipe2(trouble, O_CLOEXEC) != 0) {
+    const int reason = errno;
+    for (const int end : frames) ::close(end);
+    throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(reason)));
+  }
   std::vector<std::string> words = arguments(format, std::filesystem::absolute(draft_), width, height, frame_rate);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, ends[0], STDIN_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t defaults;
-  sigemptyset(&defaults);
-  sigaddset(&defaults, SIGPIPE);
-  posix_spawnattr_setsigdefault(&attributes, &defaults);
-  posix_spawnattr_setpgroup(&attributes, 0);  // Ctrl-C is for us: we end the movie in order
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  const int error = posix_spawnp(&child_, "ffmpeg", &files, &attributes, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  posix_spawnattr_destroy(&attributes);
-  ::close(ends[0]);
-  pipe_ = ends[1];
+  const pid_t parent = ::getpid();
+  child_ = ::fork();
+  if (child_ == 0) become_ffmpeg(argv.data(), frames[0], trouble[1], parent);
+  const int reason = errno;
+  ::close(frames[0]);
+  ::close(trouble[1]);
+  pipe_ = frames[1];
+  int error = child_ < 0 ? reason : 0;
+  if (child_ > 0 && ::read(trouble[0], &error, sizeof error) > 0) wait_for(std::exchange(child_, -1));
+  ::close(trouble[0]);
   if (error == 0) return;
-  child_ = -1;
   ::close(std::exchange(pipe_, -1));
   if (error == ENOENT)
     throw FfmpegMissing("ffmpeg is not installed, so there is no movie (Debian: apt-get install ffmpeg)");
@@ -103,7 +123,7 @@ void MovieEncoder::finish() {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
     std::filesystem::rename(draft_, path_, error);
     if (!error) return;
-    throw std::runtime_error(fmt::format("cannot write '{}': {}", path_.string(), error.message()));
+    throw std::runtime_error(fmt::format("ffmpeg left no movie '{}': {}", path_.string(), error.message()));
   }
   std::filesystem::remove(draft_, error);
   throw std::runtime_error(fmt::format("ffmpeg failed with {} {}; '{}' was not written",

@@ -3,7 +3,9 @@
 #include "scene_file.h"
 #include "scene_text.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -25,17 +27,21 @@ void write_whole_file(const fs::path& path, const std::string& text) {
   const fs::path target = fs::is_symlink(path, error) ? fs::canonical(path, error) : path;
   // A pipe or a device is written to as it is; only a file can be replaced by a complete one.
   const bool replaces = error || !fs::exists(target, error) || fs::is_regular_file(target, error);
-  const fs::path draft = replaces ? fs::path(target.string() + ".tmp") : target;
-  std::ofstream out(draft, std::ios::binary);
-  out << text;
-  out.close();
-  const int reason = errno;
-  error.clear();
-  if (out && replaces) fs::rename(draft, target, error);
-  if (out && !error) return;
-  const std::string why = error ? error.message() : std::strerror(reason);
-  if (replaces) fs::remove(draft, error);
-  throw std::runtime_error(fmt::format("cannot write '{}': {}", path.string(), why));
+  const fs::path draft = replaces ? fs::path(fmt::format("{}.{}.tmp", target.string(), ::getpid())) : target;
+  // Nobody else's file or link is written through: the draft is new.
+  if (replaces) ::unlink(draft.c_str());
+  const int file = ::open(draft.c_str(), replaces ? O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC : O_WRONLY | O_CLOEXEC, 0666);
+  int reason = file < 0 ? errno : 0;
+  for (std::string_view left = text; reason == 0 && !left.empty();) {
+    const ssize_t done = ::write(file, left.data(), left.size());
+    if (done >= 0) left.remove_prefix(static_cast<std::size_t>(done));
+    else if (errno != EINTR) reason = errno;
+  }
+  if (file >= 0 && ::close(file) != 0 && reason == 0) reason = errno;
+  if (replaces && reason == 0 && ::rename(draft.c_str(), target.c_str()) != 0) reason = errno;
+  if (reason == 0) return;
+  if (replaces && file >= 0) ::unlink(draft.c_str());
+  throw std::runtime_error(fmt::format("cannot write '{}': {}", path.string(), std::strerror(reason)));
 }
 
 std::string read_whole_file(const fs::path& path) {

@@ -1,8 +1,8 @@
 #include "progress.h"
 
-#include <fmt/format.h>
+#include "message.h"
 
-#include <cstdio>
+#include <fmt/format.h>
 
 #include <unistd.h>
 
@@ -15,7 +15,7 @@ Progress::Progress(std::string what, bool quiet)
 Progress::~Progress() { clear(); }
 
 void Progress::clear() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) tell_raw("\r\033[K");
   drawn_ = false;
 }
 
@@ -29,8 +29,7 @@ void Progress::show(double share, std::string_view detail) {
   const double done = share - first_share_;
   const std::string left =
       done > 0 && elapsed > 1 ? fmt::format(", {} left", duration_text(elapsed / done * (1 - share))) : std::string();
-  fmt::print(stderr, "\r\033[K{}: {}, {:.0f} %{}", what_, detail, 100 * share, left);
-  std::fflush(stderr);
+  tell_raw(fmt::format("\r\033[K{}: {}, {:.0f} %{}", what_, detail, 100 * share, left));
   drawn_ = true;
 }
 

@@ -1,6 +1,7 @@
 // The command reproduce: a catalogue of the paper's tables and figures.
 #include "commands.h"
 #include "interrupt.h"
+#include "message.h"
 #include "reproduce_items.h"
 
 #include "sim/catalogue.h"
@@ -69,7 +70,7 @@ int reproduce(const Options& options) {
       fmt::print("\n");
     } catch (const Interrupted&) {
       progress.clear();
-      fmt::print(stderr, "tanktread: interrupted in {}; nothing of it is kept\n", name);
+      tell(fmt::format("interrupted in {}; nothing of it is kept", name));
       return interrupted_status;
     }
   }

@@ -85,6 +85,11 @@ struct Reader {
       fail_at(source_of(table, "colours"), error.what());
     }
   }
+  void check(const toml::table& table, render::FigureParameters& p) const {
+    if (p.out.find('/') != std::string::npos || p.out == "." || p.out == "..")
+      fail_at(source_of(table, "out"), fmt::format("'out' must be a file name without folders, not '{}'; results stay in the "
+                                                   "output folder ('tanktread figure -o' writes anywhere)", p.out));
+  }
   void check(const toml::table& table, sim::TimeParameters& p) const {
     if (p.end / p.step > 1e9)
       fail_at(source_of(table, "step"), fmt::format("{:.3g} steps are too many; 'step' must be longer", p.end / p.step));

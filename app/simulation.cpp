@@ -1,6 +1,7 @@
 #include "simulation.h"
 
 #include "interrupt.h"
+#include "message.h"
 #include "progress.h"
 #include "scene_file.h"
 #include "scene_text.h"
@@ -34,7 +35,7 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   };
   observer.on_warning = [&](const std::string& warning) {
     progress.clear();
-    if (!options.quiet) fmt::print(stderr, "tanktread: warning: {}\n", warning);
+    if (!options.quiet) tell(fmt::format("warning: {}", warning));
   };
   observer.should_stop = [] { return interrupted(); };
   const sim::SimulationOutcome outcome = sim::simulate(scene, how, observer);

@@ -1,5 +1,6 @@
 #include "image.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <png.h>
 #include <unistd.h>
@@ -124,7 +125,10 @@ bool read_rows(Reader& r, png_bytep* rows) {
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text, int compression) {
   std::filesystem::path temporary = path;
   temporary.replace_filename(fmt::format(".{}.{}.tmp", path.filename().string(), ::getpid()));
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
+  // Nobody else's file or link is written through: the temporary file is new.
+  std::remove(temporary.c_str());
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  std::FILE* file = descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
   if (!file) fail(path, std::string("cannot be written: ") + std::strerror(errno));
   std::vector<png_text> chunks = chunks_of(text);
   Failure failure;

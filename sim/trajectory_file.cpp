@@ -8,6 +8,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -147,9 +148,13 @@ std::uint64_t scene_checksum(const std::string& scene) {
   return rows::checksum(scene.size(), std::as_bytes(std::span(scene)));
 }
 
-void check_space(const std::filesystem::path& path, const std::vector<Dataset>& all) {
+Wide total_bytes(const std::vector<Dataset>& all) {
   Wide bytes = 0;
   for (const Dataset& d : all) bytes += static_cast<Wide>(d.rows()) * d.row_bytes();
+  return bytes;
+}
+
+void check_space(const std::filesystem::path& path, Wide bytes) {
   if (bytes >> 62) throw std::runtime_error(fmt::format("trajectory '{}' would be too large for any disk", path.string()));
   struct statvfs disk{};
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
@@ -161,22 +166,18 @@ void check_space(const std::filesystem::path& path, const std::vector<Dataset>& 
                                          path.string(), needed * 1e-9, available * 1e-9, folder.string()));
 }
 
-}  // namespace
+constexpr std::uint64_t metadata_bytes = 65536;  // of HDF5, at the head of the file
 
-void create(const std::filesystem::path& path, const TrajectoryLayout& layout, const TrajectoryHeader& header) {
-  const std::vector<Dataset> all = datasets(layout, header.scene.size());
-  check_space(path, all);
-  // HDF5's messages name neither folder nor reason: let the system try first.
-  const int fd = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-  if (fd < 0) fail("create", path, errno);
-  ::close(fd);
+/// The file as HDF5 makes it, with all datasets allocated and nothing in them but the scene.
+void create_with_hdf5(const std::filesystem::path& path, const std::vector<Dataset>& all, const TrajectoryLayout& layout,
+                      const TrajectoryHeader& header) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   try {
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation, false);  // or the root group carries the time of day
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // checksummed metadata, no consistency flags
-    H5Pset_meta_block_size(access, 65536);                         // all of it at the head of the file
+    H5Pset_meta_block_size(access, metadata_bytes);                // all of it at the head of the file
     Handle h5(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
 
     write_number(h5, "format", trajectory_format);
@@ -212,6 +213,40 @@ void create(const std::filesystem::path& path, const TrajectoryLayout& layout, c
     h5.close();
   } catch (const std::runtime_error&) {
     throw std::runtime_error(fmt::format("cannot create trajectory '{}': {}", path.string(), hdf5_reason()));
+  }
+}
+
+/// Makes sure that what HDF5 will write can be written: a write that fails, on a full disk for one, crashes libhdf5 1.10.
+void try_to_write(int file, std::uint64_t file_bytes, std::uint64_t first_bytes) {
+  if (::ftruncate(file, static_cast<off_t>(file_bytes)) != 0) throw errno;
+  const std::vector<char> zeros(65536);
+  for (std::uint64_t at = 0; at < first_bytes; at += zeros.size())
+    if (const ssize_t done = ::pwrite(file, zeros.data(), zeros.size(), static_cast<off_t>(at));
+        done != static_cast<ssize_t>(zeros.size()))
+      throw done < 0 ? errno : ENOSPC;
+}
+
+}  // namespace
+
+void create(const std::filesystem::path& path, const TrajectoryLayout& layout, const TrajectoryHeader& header) {
+  const std::vector<Dataset> all = datasets(layout, header.scene.size());
+  const Wide bytes = total_bytes(all);
+  check_space(path, bytes);
+  // Nobody else's file or link is written through: the draft is new.
+  ::unlink(path.c_str());
+  const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+  if (file < 0) fail("create", path, errno);
+  try {
+    try_to_write(file, static_cast<std::uint64_t>(bytes) + metadata_bytes, metadata_bytes + header.scene.size());
+    ::close(file);
+    create_with_hdf5(path, all, layout, header);
+  } catch (const int reason) {
+    ::close(file);
+    ::unlink(path.c_str());
+    fail("create", path, reason);
+  } catch (...) {
+    ::unlink(path.c_str());
+    throw;
   }
 }
 
@@ -351,7 +386,7 @@ std::uint64_t Descriptor::inode() const {
 
 Lock::Lock(const std::filesystem::path& path) : path_(path.string() + ".lock") {
   for (;;) {
-    fd_ = ::open(path_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    fd_ = ::open(path_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (fd_ < 0) fail("write", path_, errno);
     if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
       ::close(std::exchange(fd_, -1));

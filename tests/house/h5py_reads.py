@@ -33,3 +33,44 @@ with tempfile.TemporaryDirectory() as folder:
         names = sorted((n for n in file["steps"] if n not in ("count", "checksum")), key=lambda n: file["steps"][n].id.get_offset())
         row = numpy.uint64(0).tobytes() + b"".join(file["steps"][n][0].tobytes() for n in names)
         assert int(file["steps/checksum"][0]) == (1 << 32) + zlib.crc32(row)
+
+    # The example of the page: an angle over time. It must be that of the table.
+    page = (Path(__file__).resolve().parents[2] / "docs" / "trajectory.md").read_text()
+    example = page.split("## An angle in ten lines")[1].split("```python\n")[1].split("```")[0]
+    assert len(example.strip().splitlines()) <= 10
+    table = subprocess.run([program, "export", path, "--csv", "-"], check=True, capture_output=True, text=True).stdout.splitlines()
+    column = table[0].split(",").index("inclination_deg")
+    expected = [float(line.split(",")[column]) for line in table[1:]]
+
+    class NoPlot:
+        def __getattr__(self, name):
+            return lambda *words, **more: None
+
+    sys.modules["matplotlib"] = sys.modules["matplotlib.pyplot"] = NoPlot()
+    values = {}
+    exec(example.replace("out/trajectory.h5", str(path)), values)
+    assert len(values["angle"]) == len(expected)
+    assert max(abs(a - b) for a, b in zip(values["angle"], expected)) < 0.5, (values["angle"], expected)
+
+    # Files of a later version and of other programs are refused in one sentence, and left as they are.
+    def refusal(change, name):
+        other = Path(folder) / name
+        other.write_bytes(path.read_bytes())
+        change(other)
+        before = other.read_bytes()
+        for words in (["info", other], ["simulate", scene, "-o", other, "--resume", "-q"]):
+            outcome = subprocess.run([program, *words], capture_output=True, text=True)
+            assert outcome.returncode == 1 and outcome.stderr.count("\n") == 1, outcome
+            assert other.read_bytes() == before
+        return outcome.stderr
+
+    def later(other):
+        with h5py.File(other, "r+") as file:
+            file.attrs["format"] = 2
+
+    def foreign(other):
+        with h5py.File(other, "w") as file:
+            file["temperature"] = [1.0, 2.0]
+
+    assert "has format 2; this program reads format 1" in refusal(later, "later.h5")
+    assert "not a Tanktread trajectory" in refusal(foreign, "foreign.h5")

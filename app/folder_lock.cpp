@@ -1,0 +1,59 @@
+#include "folder_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace app {
+
+bool FolderLock::File::take(bool shared) {
+  for (;;) {
+    descriptor = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (descriptor < 0)
+      throw std::runtime_error(fmt::format("cannot write into '{}': {}", path.parent_path().string(), std::strerror(errno)));
+    if (::flock(descriptor, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
+      const int error = errno;
+      if (error != EWOULDBLOCK) return true;  // a file system without locks: nothing can be known there
+      ::close(std::exchange(descriptor, -1));
+      return false;
+    }
+    // The holder before us may have removed the file between our open and our lock.
+    struct stat ours{}, named{};
+    if (::fstat(descriptor, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino) return true;
+    ::close(std::exchange(descriptor, -1));
+  }
+}
+
+void FolderLock::File::release() {
+  if (descriptor < 0) return;
+  // Others that share it still need the file.
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) ::unlink(path.c_str());
+  ::close(std::exchange(descriptor, -1));
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder, int shard, int shards)
+    : whole_{folder / ".tanktread.lock"}, part_{folder / fmt::format(".tanktread-{}-{}.lock", shard, shards)} {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
+  if (!whole_.take(shards > 1)) throw std::runtime_error(fmt::format("another process is writing into '{}'", folder.string()));
+  if (shards == 1 || part_.take(false)) return;
+  whole_.release();
+  throw std::runtime_error(fmt::format("another process is drawing shard {}/{} into '{}'", shard, shards, folder.string()));
+}
+
+void FolderLock::release() {
+  part_.release();
+  whole_.release();
+}
+
+FolderLock::~FolderLock() { release(); }
+
+}  // namespace app
