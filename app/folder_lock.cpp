@@ -41,7 +41,7 @@ void FolderLock::File::release() {
 FolderLock::FolderLock(const std::filesystem::path& folder, int shard, int shards)
     : whole_{folder / ".tanktread.lock"}, part_{folder / fmt::format(".tanktread-{}-{}.lock", shard, shards)} {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::create_directories(folder, error)) made_ = folder;
   if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
   if (!whole_.take(shards > 1)) throw std::runtime_error(fmt::format("another process is writing into '{}'", folder.string()));
   if (shards == 1 || part_.take(false)) return;
@@ -52,6 +52,9 @@ FolderLock::FolderLock(const std::filesystem::path& folder, int shard, int shard
 void FolderLock::release() {
   part_.release();
   whole_.release();
+  std::error_code ignored;
+  if (!made_.empty()) std::filesystem::remove(made_, ignored);  // if it is empty
+  made_.clear();
 }
 
 FolderLock::~FolderLock() { release(); }

@@ -5,7 +5,8 @@
 
 namespace app {
 
-/// Locks on files in the folder, which are gone with it; the system gives them back when the process dies, however it dies.
+/// Locks on files in the folder. They go with the lock, and so does a folder that was made for them and holds nothing else;
+/// the system gives them back when the process dies, however it dies.
 class FolderLock {
  public:
   /// The folder is made when it is not there. Throws std::runtime_error when another process holds it: a writer of the whole
@@ -24,6 +25,7 @@ class FolderLock {
     bool take(bool shared);
     void release();
   };
+  std::filesystem::path made_;  ///< the folder, if it was not there
   File whole_, part_;
 };
 
