@@ -70,14 +70,14 @@ void draw_triad(Image& image, const Font& font, const Camera& camera) {
               const double seen = glm::length(direction);
               if (seen < 0.12) {
                 seen_end_on(cairo, origin, turn[axis].z > 0, s.line);
-                draw_text(cairo, font, s.text, origin.x - 0.55 * s.text, origin.y + 0.85 * s.text,
+                draw_text_on_picture(cairo, font, s.text, origin.x - 0.55 * s.text, origin.y + 0.85 * s.text,
                           names[static_cast<std::size_t>(axis)], Align::right);
                 continue;
               }
               const glm::dvec2 tip = origin + length * direction;
               const glm::dvec2 name = tip + 0.72 * s.text * direction / seen;
               arrow(cairo, origin, tip, s.line);
-              draw_text(cairo, font, s.text, name.x, name.y + 0.30 * s.text, names[static_cast<std::size_t>(axis)],
+              draw_text_on_picture(cairo, font, s.text, name.x, name.y + 0.30 * s.text, names[static_cast<std::size_t>(axis)],
                         Align::centre);
             }
           });
@@ -116,7 +116,7 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profil
             cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
             for (const glm::dvec2& p : profile.points) cairo_line_to(cairo, place(p).x, place(p).y);
             cairo_stroke(cairo);
-            draw_text(cairo, font, s.text, axis, top - 0.7 * s.text, "u_{∞}", Align::centre);
+            draw_text_on_picture(cairo, font, s.text, axis, top - 0.7 * s.text, "u_{∞}", Align::centre);
           });
 }
 
@@ -157,8 +157,8 @@ void draw_inset(Image& image, const Font& font, const Inset& inset) {
             const double length = 1.5 * s.text, name = 0.8 * s.text;
             arrow(cairo, origin, origin + glm::dvec2(length, 0), 0.6 * s.line);
             arrow(cairo, origin, origin - glm::dvec2(0, length), 0.6 * s.line);
-            draw_text(cairo, font, name, origin.x + length + 0.3 * name, origin.y + 0.25 * name, "x");
-            draw_text(cairo, font, name, origin.x, origin.y - length - 0.35 * name, "z", Align::centre);
+            draw_text_on_picture(cairo, font, name, origin.x + length + 0.3 * name, origin.y + 0.25 * name, "x");
+            draw_text_on_picture(cairo, font, name, origin.x, origin.y - length - 0.35 * name, "z", Align::centre);
           });
 }
 

@@ -91,12 +91,12 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend) {
               cairo_move_to(cairo, bar.left + bar.width, y);
               cairo_line_to(cairo, bar.left + bar.width + s.tick, y);
               cairo_stroke(cairo);
-              draw_text(cairo, font, s.text, bar.left + bar.width + s.tick + s.gap, y + 0.36 * s.text, number_text(value));
+              draw_text_on_picture(cairo, font, s.text, bar.left + bar.width + s.tick + s.gap, y + 0.36 * s.text, number_text(value));
             }
             // centred above the bar as far as the edge of the picture allows
             const double width = text_width(cairo, font, 1.1 * s.text, legend.label);
             const double x = std::min(middle - width / 2, image.width - s.margin - width);
-            draw_text(cairo, font, 1.1 * s.text, x, label, legend.label);
+            draw_text_on_picture(cairo, font, 1.1 * s.text, x, label, legend.label);
           });
 }
 

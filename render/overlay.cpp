@@ -26,17 +26,17 @@ void draw_captions(Image& image, const Font& font, const Frame& frame) {
       double y = margin + 0.76 * large;
       if (time) {
         set_colour(cairo, ink);
-        draw_text(cairo, font, large, margin, y, captions.time);
+        draw_text_on_picture(cairo, font, large, margin, y, captions.time);
         y += 0.35 * large + small;
       }
       if (parameters) {
         set_colour(cairo, soft_ink);
-        draw_text(cairo, font, small, margin, y, captions.parameters);
+        draw_text_on_picture(cairo, font, small, margin, y, captions.parameters);
         y += 1.7 * small;
       }
       if (!captions.note.empty()) {
         set_colour(cairo, note_ink);
-        draw_text(cairo, font, small, margin, std::max(y, margin + 0.76 * large), captions.note);
+        draw_text_on_picture(cairo, font, small, margin, std::max(y, margin + 0.76 * large), captions.note);
       }
     });
   }
@@ -50,14 +50,14 @@ void draw_captions(Image& image, const Font& font, const Frame& frame) {
                                       text_width(cairo, font, small, captions.parameters) * parameters);
         const double room = image.width - 2 * (margin + aside + large), width = text_width(cairo, font, large, captions.title);
         const double size = width > room && room > 0 ? std::max(large * room / width, small) : large;
-        draw_text(cairo, font, size, image.width / 2.0, top, captions.title, Align::centre);
+        draw_text_on_picture(cairo, font, size, image.width / 2.0, top, captions.title, Align::centre);
       }
     });
     if (!captions.panel.empty())
       draw_on(image, {0, static_cast<int>(image.height - margin - 2 * small), image.width, static_cast<int>(margin + 2 * small)},
               [&](cairo_t* cairo) {
                 set_colour(cairo, soft_ink);
-                draw_text(cairo, font, small, image.width / 2.0, image.height - margin, captions.panel, Align::centre);
+                draw_text_on_picture(cairo, font, small, image.width / 2.0, image.height - margin, captions.panel, Align::centre);
               });
   }
   if (view.scale_bar && captions.scale_length > 0) {
@@ -71,7 +71,7 @@ void draw_captions(Image& image, const Font& font, const Frame& frame) {
                 set_colour(cairo, ink);
                 cairo_rectangle(cairo, margin, baseline - thickness, length, thickness);
                 cairo_fill(cairo);
-                draw_text(cairo, font, small, margin + length / 2, baseline - thickness - 0.5 * small, captions.scale,
+                draw_text_on_picture(cairo, font, small, margin + length / 2, baseline - thickness - 0.5 * small, captions.scale,
                           Align::centre);
               });
   }

@@ -90,7 +90,10 @@ double text_width(cairo_t* cairo, const Font& font, double size, std::string_vie
   return width;
 }
 
-double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text, Align align) {
+namespace {
+
+// The outlines of all letters as the current path; the advance width.
+double text_path(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text, Align align) {
   const double width = text_width(cairo, font, size, text);
   double pen = align == Align::left ? x : align == Align::centre ? x - width / 2 : x - width;
   cairo_new_path(cairo);
@@ -100,6 +103,27 @@ double draw_text(cairo_t* cairo, const Font& font, double size, double x, double
     cairo_text_path(cairo, run.text.c_str());
     pen += advance(cairo, run.text);
   }
+  return width;
+}
+
+}  // namespace
+
+double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text, Align align) {
+  const double width = text_path(cairo, font, size, x, y, text, align);
+  cairo_fill(cairo);
+  return width;
+}
+
+double draw_text_on_picture(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
+                            Align align) {
+  const double width = text_path(cairo, font, size, x, y, text, align);
+  cairo_pattern_t* colour = cairo_pattern_reference(cairo_get_source(cairo));
+  cairo_set_source_rgba(cairo, 1, 1, 1, 0.5);
+  cairo_set_line_width(cairo, 0.28 * size);
+  cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+  cairo_stroke_preserve(cairo);
+  cairo_set_source(cairo, colour);
+  cairo_pattern_destroy(colour);
   cairo_fill(cairo);
   return width;
 }

@@ -25,6 +25,9 @@ enum class Align { left, centre, right };
 /// Returns the advance width. size: of the em square, in user units.
 double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
                  Align align = Align::left);
+/// The same with a soft white rim, for text that may stand on a vesicle.
+double draw_text_on_picture(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
+                            Align align = Align::left);
 double text_width(cairo_t* cairo, const Font& font, double size, std::string_view text);
 
 /// Shortest decimal form that a reader expects on an axis: "0.5", "-1", "10^{-3}", with a true minus sign.
