@@ -41,9 +41,9 @@ std::vector<double> bar_ticks(double low, double high) {
 
 BarPlace colour_bar_place(const Image& image, const Font& font, const Legend& legend) {
   const Sizes s = sizes_of(image);
-  const double width = std::max(22 * image.height / 1080.0, 6.0), height = std::round(0.46 * image.height);
+  const double width = std::max(22 * image.height / 1080.0, 6.0), height = std::round(0.44 * image.height);
   const double right = image.width - s.margin - widest_tick(font, s.text, legend) - s.gap - s.tick;
-  return {std::round(right - width), std::round(0.27 * image.height), std::round(width), height};
+  return {std::round(right - width), std::round(0.295 * image.height), std::round(width), height};
 }
 
 void draw_colour_bar(Image& image, const Font& font, const Legend& legend) {

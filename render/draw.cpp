@@ -172,8 +172,9 @@ void Renderer::draw_arrows(const Frame& frame) {
     const glm::dvec3 v = rests ? glm::dvec3(0) : to_glm(flow.velocities.row(i)) / fastest;
     const glm::dvec3 middle = to_glm(flow.points.row(i)), arrow = v * longest_arrow * camera.half_height;
     if (!rests && !(glm::length(v) >= weakest_arrow)) continue;
-    const double shown = flow.shown * clear_of_captions(camera.picture_place(middle)) *
-                         clear_of_annotation(frame, camera.picture_place(middle)) *
+    double beside = clear_of_annotation(frame, camera.picture_place(middle));
+    if (!camera.follows) beside = beside > 0.6;  // arrows at rest are there or not: a faint one looks like a flaw
+    const double shown = flow.shown * clear_of_captions(camera.picture_place(middle)) * beside *
                          clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
     if (shown <= 0) continue;
     starts.emplace_back(middle, shown);

@@ -117,13 +117,12 @@ double draw_text(cairo_t* cairo, const Font& font, double size, double x, double
 double draw_text_on_picture(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
                             Align align) {
   const double width = text_path(cairo, font, size, x, y, text, align);
-  cairo_pattern_t* colour = cairo_pattern_reference(cairo_get_source(cairo));
+  cairo_save(cairo);
   cairo_set_source_rgba(cairo, 1, 1, 1, 0.5);
   cairo_set_line_width(cairo, 0.28 * size);
   cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
   cairo_stroke_preserve(cairo);
-  cairo_set_source(cairo, colour);
-  cairo_pattern_destroy(colour);
+  cairo_restore(cairo);
   cairo_fill(cairo);
   return width;
 }
