@@ -167,7 +167,7 @@ std::vector<render::Plot> spectra_plots(const render::FigureInput& input) {
   render::Plot curvature = position;
   curvature.y.label = "E_{n} of the mean curvature";
   const double first = input.states.front().time, span = std::max(input.states.back().time - first, 1e-300);
-  constexpr double nothing = 1e-14;  // degrees that a symmetry empties
+  constexpr double nothing = 1e-11;  // degrees that a symmetry empties
   for (const sim::State& state : input.states) {
     const sim::VesicleState& v = state.vesicles.front();
     const int p = v.position.order, q = 4 * p;

@@ -27,11 +27,12 @@ constexpr Reproduction reproductions[] = {
     {"fig4", "a biconcave vesicle in Poiseuille flow", reproduce_poiseuille},
     {"fig5", "error of one block iteration against distance", reproduce_block_error},
     {"fig6", "two vesicles in shear flow", reproduce_two_vesicles},
+    {"tank-treading", "angle and frequency against reduced volume, beside other authors'", reproduce_tank_treading},
 };
 
 void print_catalogue() {
-  for (const Reproduction& item : reproductions) fmt::print("{:<8} {}\n", item.name, item.meaning);
-  fmt::print("{:<8} {}\n", "all", "all of these");
+  for (const Reproduction& item : reproductions) fmt::print("{:<14} {}\n", item.name, item.meaning);
+  fmt::print("{:<14} {}\n", "all", "all of these");
 }
 
 }  // namespace

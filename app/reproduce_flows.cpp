@@ -112,8 +112,8 @@ Report reproduce_poiseuille(const Effort& effort) {
   wanted.columns = effort.quick ? 0 : 7;
   for (const int step : {0, 100, 200, 300, 400, 600, 800}) wanted.times.push_back(step * unit);
   report.figure = make_figure({{trajectory, settings, {}}}, wanted, effort.options);
-  report.picture_text = "Sections with the plane y = 0, at steps 0, 100, 200, 300, 400, 600 and 800, seen by an observer who moves "
-                        "with the fluid on the axis of the tube: the vesicle falls behind.";
+  report.picture_text = "Sections with the plane y = 0, at steps 0, 100, 200, 300, 400, 600 and 800, as in the paper, each in a window round "
+                        "its centroid; the flow goes to the right.";
   return report;
 }
 

@@ -30,6 +30,7 @@ Report reproduce_spectra(const Effort&);              // Figure 3
 Report reproduce_poiseuille(const Effort&);           // Figure 4
 Report reproduce_block_error(const Effort&);          // Figure 5
 Report reproduce_two_vesicles(const Effort&);         // Figure 6
+Report reproduce_tank_treading(const Effort&);        // other authors' angles and frequencies
 
 /// The four shapes of tables 2 and 3; the paper's are only pictured.
 struct NamedShape {

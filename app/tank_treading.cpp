@@ -107,21 +107,23 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
   frequency.y_range = render::Range{0, 0.55};
   angle.legend = render::Corner::upper_left;
   frequency.legend = render::Corner::lower_right;
-  const auto literature = [](const std::vector<LiteraturePoint>& all, double contrast, std::size_t colour, render::Plot& plot) {
+  // Colours tell the contrast, marks the source: sources are named in the first panel, contrasts in the second.
+  const auto literature = [](const std::vector<LiteraturePoint>& all, double contrast, std::size_t colour, render::Plot& plot,
+                             bool named) {
+    std::string_view source;
     for (const LiteraturePoint& l : all) {
       if (l.viscosity_contrast != contrast) continue;
-      render::Curve* curve = nullptr;
-      const std::string name = fmt::format("{}, λ = {}", l.source, contrast);
-      for (render::Curve& c : plot.curves)
-        if (c.name == name) curve = &c;
-      if (!curve) {
-        plot.curves.emplace_back();
-        curve = &plot.curves.back();
-        curve->name = name;
-        curve->colour = colour;
-        curve->line = false;
-        curve->marker = render::Marker::diamond;
+      if (source != l.source) {
+        source = l.source;
+        render::Curve fresh;
+        fresh.colour = colour;
+        fresh.line = false;
+        fresh.marker = source.starts_with("Kraus") ? render::Marker::diamond : render::Marker::square;
+        const bool known = std::any_of(plot.curves.begin(), plot.curves.end(), [&](const auto& c) { return c.name == source; });
+        if (named && !known) fresh.name = source;
+        plot.curves.push_back(fresh);
       }
+      render::Curve* curve = &plot.curves.back();
       curve->x.push_back(l.reduced_volume);
       curve->y.push_back(l.value);
       curve->error.push_back(l.error);
@@ -138,13 +140,12 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
     }
     theory_angle.colour = theory_frequency.colour = k;
     theory_angle.dashed = theory_frequency.dashed = true;
-    if (k == 0) theory_angle.name = theory_frequency.name = "Keller, Skalak 1982";
+    if (k == 0) theory_angle.name = "Keller, Skalak 1982";
     angle.curves.push_back(theory_angle);
     frequency.curves.push_back(theory_frequency);
   }
   for (std::size_t k = 0; k < contrasts.size(); ++k) {
     render::Curve ours_angle;
-    ours_angle.name = fmt::format("Tanktread, λ = {}", contrasts[k]);
     ours_angle.colour = k;
     ours_angle.marker = render::Marker::ring;
     std::vector<SteadyPoint> own;
@@ -153,6 +154,14 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
     std::sort(own.begin(), own.end(), [](const SteadyPoint& a, const SteadyPoint& b) { return a.reduced_volume < b.reduced_volume; });
     ours_angle.line = own.size() > 2;
     render::Curve ours_frequency = ours_angle;
+    ours_frequency.name = fmt::format("λ = {}", contrasts[k]);
+    if (k == 0) {  // a line of the legend alone
+      render::Curve mark;
+      mark.name = "Tanktread";
+      mark.line = false;
+      mark.marker = render::Marker::ring;
+      angle.curves.push_back(mark);
+    }
     for (const SteadyPoint& p : own) {
       ours_angle.x.push_back(p.reduced_volume);
       ours_angle.y.push_back(p.angle);
@@ -161,8 +170,8 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
     }
     angle.curves.push_back(ours_angle);
     frequency.curves.push_back(ours_frequency);
-    literature(literature_angles(), contrasts[k], k, angle);
-    literature(literature_frequencies(), contrasts[k], k, frequency);
+    literature(literature_angles(), contrasts[k], k, angle, true);
+    literature(literature_frequencies(), contrasts[k], k, frequency, false);
   }
   return {angle, frequency};
 }

@@ -63,11 +63,17 @@ void set_ranges(Placed& p, bool tight_x) {
   p.panel.y = p.plot.y_range ? *p.plot.y_range : range_of_axis(ys, p.plot.y.scale, false);
 }
 
-void place_legend(Placed& p, const Ruler& ruler, const Theme& theme) {
-  for (const Curve& curve : p.plot.curves) {
+std::vector<LegendEntry> legend_of(const Plot& plot, const Theme& theme) {
+  std::vector<LegendEntry> legend;
+  for (const Curve& curve : plot.curves) {
     const std::optional<Marker> marker = curve.line ? std::nullopt : curve.marker;
-    if (!curve.name.empty()) p.legend.push_back({curve.name, colour_of(theme, curve), marker, curve.dashed});
+    if (!curve.name.empty()) legend.push_back({curve.name, colour_of(theme, curve), marker, curve.dashed});
   }
+  return legend;
+}
+
+void place_legend(Placed& p, const Ruler& ruler, const Theme& theme) {
+  p.legend = legend_of(p.plot, theme);
   if (p.legend.empty()) return;
   // A long row of instants is told by its ends and its middle.
   if (p.legend.size() > 5 && p.plot.curves.front().instant)
@@ -121,7 +127,15 @@ Figure arranged(const FigureInput& input, std::vector<Plot> plots, bool stacked,
     set_ranges(p, stacked);
     placed.push_back(std::move(p));
   }
-  if (stacked) {  // one span of time
+  if (stacked) {  // one span of time, and a legend once where all say the same
+    const auto names = [&](const Placed& p) {
+      std::vector<std::string> all;
+      for (const Curve& curve : p.plot.curves) all.push_back(curve.name);
+      return all;
+    };
+    const bool same = std::all_of(placed.begin(), placed.end(), [&](const Placed& p) { return names(p) == names(placed.front()); });
+    for (std::size_t k = 1; same && k < count; ++k)
+      for (Curve& curve : placed[k].plot.curves) curve.name.clear();
     Range span = placed.front().panel.x;
     for (const Placed& p : placed) span = {std::min(span.low, p.panel.x.low), std::max(span.high, p.panel.x.high)};
     for (Placed& p : placed) p.panel.x = span;

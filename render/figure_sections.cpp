@@ -169,7 +169,7 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
     strip.titles.push_back(fmt::format("({})  {}", letter(k), time_text(input, s.times[k])));
     long_titles = long_titles || !fits(strip.titles.back(), panel.width);
     Axes& axes = strip.axes[k];
-    if (!axes.x.label.empty() && !fits(axes.x.label, panel.width) && k % columns != (columns - 1) / 2) axes.x.label.clear();
+    if (!axes.x.label.empty() && !fits(axes.x.label, 0.8 * panel.width) && k % columns != (columns - 1) / 2) axes.x.label.clear();
     if (!axes.y.label.empty() && !fits(axes.y.label, panel.height + title) && k / columns != (rows - 1) / 2) axes.y.label.clear();
   }
   if (long_titles)

@@ -124,6 +124,8 @@ Ticks ticks_of(const Ruler& ruler, const Theme& theme, const Axis& axis, const R
   const int most = std::clamp(static_cast<int>(length / (horizontal ? 5 : 3.2) / theme.text), 2, 6);
   for (int wanted = most; wanted >= 1; --wanted)
     if (Ticks t = measured(tick_values(range, wanted, axis.scale)); t.values.size() >= 2 && fits(t)) return t;
+  for (int wanted = most + 1; wanted <= most + 3; ++wanted)
+    if (Ticks t = measured(tick_values(range, wanted, axis.scale)); t.values.size() >= 2 && fits(t)) return t;
   // A short axis: two numbers that are far apart, or one.
   for (int wanted = 1; wanted <= 6; ++wanted)
     if (std::vector<double> v = tick_values(range, wanted, axis.scale); v.size() >= 2)

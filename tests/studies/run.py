@@ -134,6 +134,22 @@ def literature(s):
     return out
 
 
+def treading_frequency(s):
+    """Frequency of the membrane in steady tank-treading against published values (± as they state it), λ = 1, p = 8, κ_b = 0.01,
+    at χt = 20; taken from the last state by `figure tank-treading`."""
+    out = []
+    for nu, frequency, tolerance in ((0.80, 0.33, 0.02), (0.95, 0.454, 0.0135)):
+        s.count += 1
+        stem = s.folder / f"{s.count}"
+        for command in (["simulate", "scenes/tank-treading.toml", "-o", f"{stem}.h5", "--set", "vesicle.order=8", "--set",
+                         f"vesicle.reduced_volume={nu}"], ["figure", "tank-treading", f"{stem}.h5", "-o", str(stem)]):
+            subprocess.run([s.program, *command, "-q"], cwd=ROOT, check=True)
+        with open(f"{stem}.csv") as file:
+            own = [row for row in csv.DictReader(file) if row["panel"].startswith("frequency") and row["curve"] == "λ = 1"]
+        out.append(s.check(f"ν = {nu}: ω/χ", float(own[0]["y"]), frequency, tolerance))
+    return out
+
+
 def poiseuille(s):
     """Parachute (t = 40) and slipper (t = 60) at p = 8, Δt = 0.05. The paper's errors there: area 4.24e-2, volume 5.96e-3."""
     out = []
@@ -196,7 +212,8 @@ def schemes(s):
     return out
 
 
-CASES = {"tank-treading": tank_treading, "tumbling": tumbling, "quasi-spherical": quasi_spherical,
+CASES = {"tank-treading": tank_treading, "treading-frequency": treading_frequency, "tumbling": tumbling,
+         "quasi-spherical": quasi_spherical,
          "literature": literature, "poiseuille": poiseuille, "relaxation": relaxation, "schemes": schemes}
 
 
