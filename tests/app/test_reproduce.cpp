@@ -94,7 +94,7 @@ TEST_CASE("the three-lobed shape has exactly the radius it names", "[reproduce]"
 }
 
 TEST_CASE("the scenes of the figures are those in scenes/", "[reproduce]") {
-  const fs::path scenes = fs::path(__FILE__).parent_path().parent_path().parent_path() / "scenes";
+  const fs::path scenes = TANKTREAD_SCENES;
   const app::Settings file = app::read_scene(scenes / "two-vesicles.toml");
   const app::Settings own = app::parse_scene(app::two_vesicles_scene, "fig6", ".");
   CHECK(app::physics_hash(file.scene) == app::physics_hash(own.scene));
