@@ -100,7 +100,7 @@ class PlaneSampler {
   }
 
  private:
-  static constexpr int finer = 4;
+  static constexpr int finer = 3;
 
   sim::Vec3 in_space(const Vec2& p) const {
     return request_.plane.origin + p.x() * request_.plane.right + p.y() * request_.plane.up;

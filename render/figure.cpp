@@ -16,7 +16,7 @@ const std::vector<FigureRow>& figures() {
       {"cross-sections", "sections with a plane, one panel an instant", FigureNeeds::instants, draw_cross_sections},
       {"overlay", "the same sections over each other in one panel, coloured by time", FigureNeeds::instants, draw_overlay},
       {"snapshots", "a sheet of pictures at one scale, one panel an instant", FigureNeeds::stills, draw_snapshots},
-      {"streamlines", "streamlines of the whole flow in a plane over its speed", FigureNeeds::flow, draw_streamlines},
+      {"streamlines", "streamlines in a plane, of the whole flow, over its speed there (the part along the plane)", FigureNeeds::flow, draw_streamlines},
       {"inclination", "angle between the flow and the longest axis in the shear plane against time", FigureNeeds::all_states,
        draw_inclination},
       {"time-series", "chosen quantities against time, one panel each", FigureNeeds::series, draw_time_series},
