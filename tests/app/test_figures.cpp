@@ -1,0 +1,76 @@
+// Figures from the command line: every kind from a real trajectory, sizes, themes, and what is refused.
+#include "app/quantities.h"
+#include "render/figure.h"
+#include "render/image.h"
+#include "tests/support/program.h"
+
+#include <catch2/catch.hpp>
+
+#include <fmt/format.h>
+
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A short run of one small vesicle in shear flow.
+struct Bench {
+  support::TemporaryFolder folder;
+  std::string trajectory = (folder / "t.h5").string();
+  Bench() {
+    const support::Outcome made = support::run(
+        folder, {TANKTREAD_PROGRAM, "simulate", std::string(TANKTREAD_SCENES) + "/tank-treading.toml", "-q", "-o", trajectory, "--set",
+                 "vesicle.order=4", "--set", "time.end=0.3", "--set", "time.save_every=0.1"});
+    REQUIRE(made.status == 0);
+  }
+  support::Outcome figure(const std::string& kind, std::vector<std::string> more) const {
+    std::vector<std::string> words{TANKTREAD_PROGRAM, "figure", kind, trajectory, "-o", (folder / kind).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return support::run(folder, words);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("every kind of figure is drawn from a trajectory, at the size that is asked for", "[figure]") {
+  const Bench bench;
+  for (const render::FigureRow& row : render::figures()) {
+    INFO(row.name);
+    const std::string name(row.name);
+    const support::Outcome drawn = bench.figure(name, {"--size", "320x240px", "--theme", "slides", "--set", "figure.spacing=0.6",
+                                                       "--set", "figure.panels=2"});
+    INFO(drawn.err);
+    REQUIRE(drawn.status == 0);
+    for (const char* ending : {".svg", ".pdf", ".csv"}) CHECK(fs::file_size(bench.folder / (name + ending)) > 30);
+    const render::Image image = render::read_png(bench.folder / (name + ".png")).image;
+    CHECK(image.width == 320);
+    CHECK(image.height == 240);
+  }
+}
+
+TEST_CASE("every quantity can be drawn against time", "[figure]") {
+  const Bench bench;
+  std::string all;
+  for (const app::QuantityRow& row : app::quantities()) all += fmt::format("{}\"{}\"", all.empty() ? "" : ",", row.name);
+  const support::Outcome drawn = bench.figure("time-series", {"--set", "figure.quantities=[" + all + "]"});
+  INFO(drawn.err);
+  REQUIRE(drawn.status == 0);
+  const std::string csv = support::read_file(bench.folder / "time-series.csv");
+  for (const app::QuantityRow& row : app::quantities()) CHECK_THAT(csv, Contains(row.axis));
+}
+
+TEST_CASE("a figure that cannot be says why in one sentence", "[figure]") {
+  const Bench bench;
+  const auto complaint = [&](const std::string& kind, std::vector<std::string> more) {
+    const support::Outcome outcome = bench.figure(kind, std::move(more));
+    CHECK(outcome.status != 0);
+    return outcome.err;
+  };
+  CHECK_THAT(complaint("streamline", {}), Contains("did you mean 'streamlines'"));
+  CHECK_THAT(complaint("phase", {"--set", "figure.abscissa=enrgy"}), Contains("did you mean 'energy'"));
+  CHECK_THAT(complaint("overlay", {"--theme", "papr"}), Contains("did you mean 'paper'"));
+  CHECK_THAT(complaint("overlay", {"--size", "12cm"}), Contains("180mm"));
+  CHECK_THAT(complaint("overlay", {"--set", "figure.plane_point=[0,9,0]"}), Contains("cuts no vesicle"));
+  CHECK_THAT(complaint("streamlines", {"--set", "figure.plane_point=[0,9,0]"}), Contains("cuts no vesicle"));
+  CHECK_THAT(complaint("overlay", {"--set", "figure.plane_normal=[0,0,0]"}), Contains("plane_normal"));
+}
