@@ -2,6 +2,7 @@
 
 #include "captions.h"
 #include "scene_text.h"
+#include "streamlines.h"
 #include "version.h"
 
 #include "render/annotation.h"
@@ -43,7 +44,7 @@ std::vector<std::int64_t> instants_to_look_at(const sim::TrajectoryReader& traje
 
 render::FlowArrows arrows_of(const ViewPanel& p, const render::StateSummary& summary) {
   render::FlowArrows arrows;
-  if (!p.view.flow_arrows) return arrows;
+  if (!p.view.flow_arrows || p.view.streamlines != "off") return arrows;
   arrows.points = render::arrow_points(p.framing, p.framing.moment(summary));
   arrows.velocities = sim::background_velocity(p.source.settings.scene.flows, summary.time, arrows.points);
   arrows.reference_speed = p.arrow_speed;
@@ -67,6 +68,49 @@ render::FlowProfile profile_of(const ViewPanel& p, const render::Camera& camera,
   for (int k = 0; k < count; ++k)
     profile.points.emplace_back(heights[static_cast<std::size_t>(k)], glm::dot(render::to_glm(velocity.row(k)), turn[0]));
   return profile;
+}
+
+/// Streamlines of the whole flow in the plane of the arrows, as far as the picture reaches; none under the captions.
+render::FlowLines lines_of(sim::Plans& plans, const ViewPanel& p, const sim::State& state, const render::Camera& camera) {
+  render::FlowLines all;
+  if (p.view.streamlines == "off") return all;
+  Eigen::Index normal = 0, across = 0;
+  render::to_sim(p.framing.axes.back).cwiseAbs().maxCoeff(&normal);
+  sim::Vec3 right = render::to_sim(p.framing.axes.right);
+  right[normal] = 0;
+  right.cwiseAbs().maxCoeff(&across);
+  FlowRequest request;
+  request.plane.origin = render::to_sim(camera.target);
+  request.plane.right = sim::Vec3::Unit(across);
+  request.plane.up = sim::Vec3::Unit(3 - normal - across);
+  request.plane.normal = -request.plane.right.cross(request.plane.up);
+  constexpr double beyond = 1.15;  // of the picture: perspective and oblique views see more of the plane
+  request.x = {-beyond * camera.half_width, beyond * camera.half_width};
+  request.y = {-beyond * camera.half_height, beyond * camera.half_height};
+  if (p.view.streamlines == "vesicles") request.frame_velocity = frame_velocity(plans, state);
+  request.spacing = camera.half_height / 9;
+  request.with_speed = false;
+  for (const render::Streamline& line : flow_picture(plans, p.source.settings.scene, state, request).lines) {
+    const std::vector<Eigen::Index> heads = render::arrow_places(line, 7 * request.spacing);
+    render::FlowLines::Line part;
+    const auto finish = [&] {
+      if (part.points.size() > 1) all.lines.push_back(part);
+      part = {};
+    };
+    for (Eigen::Index k = 0; k < line.points.rows(); ++k) {
+      const sim::Vec3 point =
+          request.plane.origin + line.points(k, 0) * request.plane.right + line.points(k, 1) * request.plane.up;
+      if (render::clear_of_captions(camera.picture_place(render::to_glm(point))) < 0.5) {
+        finish();
+        continue;
+      }
+      if (std::find(heads.begin(), heads.end(), k) != heads.end()) part.heads.push_back(part.points.size());
+      part.points.push_back(render::to_glm(point));
+    }
+    part.closed = line.closed && static_cast<Eigen::Index>(part.points.size()) == line.points.rows();
+    finish();
+  }
+  return all;
 }
 
 /// All vesicles cut by the plane y = that of what the camera follows or aims at.
@@ -134,6 +178,7 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   const render::StateSummary summary = render::summarize(state);
   frame.camera = render::make_camera(p.framing, p.framing.moment(summary));
   frame.arrows = arrows_of(p, summary);
+  frame.flow_lines = lines_of(studio.plans, p, state, frame.camera);
   if (frame.view.flow_profile) frame.profile = profile_of(p, frame.camera, state.time);
   if (frame.view.inset) frame.inset = inset_of(p, state, frame.camera);
   frame.captions = p.captions;
@@ -260,6 +305,7 @@ std::vector<render::Image> draw_stills(const sim::TrajectoryReader& trajectory, 
   plain.view.background = "white";
   plain.view.flow_arrows = plain.view.time_stamp = plain.view.caption = plain.view.scale_bar = false;
   plain.view.title = plain.view.triad = plain.view.flow_profile = plain.view.inset = plain.view.colour_bar = false;
+  plain.view.streamlines = "off";
   plain.view.eye.reset();
   plain.view.target.reset();
   Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, 1080);

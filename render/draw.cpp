@@ -3,6 +3,7 @@
 #include "arrow_shape.h"
 #include "assets.h"
 #include "draw_values.h"
+#include "style.h"
 
 #include <algorithm>
 #include <cmath>
@@ -210,6 +211,7 @@ Image draw_frame(Renderer& renderer, const Frame& frame) {
   renderer.begin(frame);
   renderer.draw_ground(frame);
   renderer.draw_arrows(frame);
+  if (!find_style(frame.view.style).cut) renderer.draw_flow_lines(frame);
   renderer.draw_bodies(frame);
   Image image = renderer.finish(frame);
   draw_captions(image, renderer.font_, frame);

@@ -1,4 +1,5 @@
-// Draws a frame. draw_frame() reads like the list of its passes: ground, arrows, bodies with outlines, captions.
+// Draws a frame. draw_frame() reads like the list of its passes: ground, arrows or lines of the flow, bodies with
+// outlines, captions.
 #pragma once
 
 #include "context.h"
@@ -34,6 +35,9 @@ class Renderer {
   void draw_bodies(const Frame&);
   void draw_ghosts(const Frame&);
   void draw_cut_edges(const Frame&);
+  void draw_flow_lines(const Frame&);
+  /// A strip along the points on the picture, `reach` samples to both sides, moved `nearer` to the eye.
+  void draw_ribbon(const Camera&, std::span<const glm::dvec3> points, bool closed, float reach, double nearer);
   void upload(const Body&);
   void draw_body(const Frame&, const Body&);
   /// The core hides what lies behind; the edge is thirds of a sample that let it through.

@@ -155,13 +155,74 @@ void Renderer::draw_ghosts(const Frame& frame) {
   gl.Disable(GL_BLEND);
 }
 
+void Renderer::draw_ribbon(const Camera& camera, std::span<const glm::dvec3> points, bool closed, float reach, double nearer) {
+  const glm::dvec2 sample(2.0 / framebuffer_->width(), 2.0 / framebuffer_->height());  // clip units
+  const std::size_t n = points.size();
+  if (n < 2) return;
+  std::vector<glm::dvec4> clips;
+  for (const glm::dvec3& point : points) {
+    glm::dvec4 eye = glm::dmat4(camera.view) * glm::dvec4(point, 1);
+    eye.z += nearer;
+    clips.push_back(glm::dmat4(camera.projection) * eye);
+  }
+  std::vector<glm::vec4> strip;
+  std::vector<float> across;
+  for (std::size_t k = 0; k < n + closed; ++k) {
+    const glm::dvec4 &here = clips[k % n], &before = clips[k > 0 || closed ? (k + n - 1) % n : 0],
+                     &after = clips[k + 1 < n || closed ? (k + 1) % n : n - 1];
+    const glm::dvec2 along = (glm::dvec2(after) / after.w - glm::dvec2(before) / before.w) / sample;
+    const glm::dvec2 side = glm::dvec2(-along.y, along.x) / std::max(glm::length(along), 1e-9) * sample * here.w;
+    for (const float sign : {-1.0F, 1.0F}) {
+      strip.emplace_back(glm::dvec2(here) + static_cast<double>(sign * reach) * side, here.z, here.w);
+      across.push_back(sign * reach);
+    }
+  }
+  ribbons_.attribute(0, strip);
+  ribbons_.attribute(1, across);
+  context_.gl().DrawArrays(GL_TRIANGLE_STRIP, 0, static_cast<GLsizei>(strip.size()));
+}
+
+void Renderer::draw_flow_lines(const Frame& frame) {
+  if (frame.flow_lines.lines.empty()) return;
+  const Gl& gl = context_.gl();
+  const Program& p = program("ribbon", "");
+  const float half_width = samples(frame.view, 1.1, 0.4);
+  const double head = 0.034 * frame.camera.half_height;
+  p.use();
+  p.set("u_core", -2.0F);
+  p.set("u_half_width", half_width);
+  p.set("u_rim", vector_of(flow_line_colour));
+  gl.Enable(GL_BLEND);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl.DepthMask(GL_FALSE);
+  gl.Disable(GL_CULL_FACE);
+  const glm::dvec3 toward = glm::normalize(frame.camera.eye - frame.camera.target);
+  for (const FlowLines::Line& line : frame.flow_lines.lines) {
+    draw_ribbon(frame.camera, line.points, line.closed, half_width + 1, 0);
+    for (const std::size_t k : line.heads) {
+      if (k == 0 || k + 1 >= line.points.size()) continue;
+      const glm::dvec3 along = glm::normalize(line.points[k + 1] - line.points[k - 1]), side = glm::cross(toward, along);
+      std::vector<glm::vec4> corners;
+      for (const glm::dvec3& corner : {line.points[k] - 0.5 * head * along + 0.36 * head * side,
+                                       line.points[k] - 0.5 * head * along - 0.36 * head * side,
+                                       line.points[k] + 0.5 * head * along})
+        corners.push_back(frame.camera.projection * (frame.camera.view * glm::vec4(corner, 1)));
+      ribbons_.attribute(0, corners);
+      ribbons_.attribute(1, std::vector<float>(3, 0.0F));
+      gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    }
+  }
+  gl.Enable(GL_CULL_FACE);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
+}
+
 // The rims that the plane leaves: a bright core between two dark lines, like the membrane's thickness under a lens.
 void Renderer::draw_cut_edges(const Frame& frame) {
   const Gl& gl = context_.gl();
   const Program& p = program("ribbon", "");
   const float line = samples(frame.view, std::max(frame.view.outline_width, 1.6), 1.0);
   const float core = 0.9F * line, half_width = core + 0.9F * line;
-  const glm::dvec2 sample(2.0 / framebuffer_->width(), 2.0 / framebuffer_->height());  // clip units
   p.use();
   p.set("u_core", core);
   p.set("u_half_width", half_width);
@@ -174,29 +235,7 @@ void Renderer::draw_cut_edges(const Frame& frame) {
     p.set("u_colour", vector_of({0.5 + 0.5 * body.colour.r, 0.5 + 0.5 * body.colour.g, 0.5 + 0.5 * body.colour.b}));
     p.set("u_rim", vector_of(outline_colour(body)));
     for (const std::vector<glm::dvec3>& edge : body.cut->edges) {
-      const std::size_t n = edge.size();
-      if (n < 3) continue;
-      std::vector<glm::dvec4> clips;
-      for (const glm::dvec3& point : edge) {
-        glm::dvec4 eye = glm::dmat4(frame.camera.view) * glm::dvec4(point, 1);
-        eye.z += 0.004 * body.mesh.area_radius;  // in front of the membrane that it bounds
-        clips.push_back(glm::dmat4(frame.camera.projection) * eye);
-      }
-      std::vector<glm::vec4> strip;
-      std::vector<float> across;
-      const float reach = half_width + 1;
-      for (std::size_t k = 0; k <= n; ++k) {
-        const glm::dvec4 &before = clips[(k + n - 1) % n], &here = clips[k % n], &after = clips[(k + 1) % n];
-        const glm::dvec2 along = (glm::dvec2(after) / after.w - glm::dvec2(before) / before.w) / sample;
-        const glm::dvec2 side = glm::dvec2(-along.y, along.x) / std::max(glm::length(along), 1e-9) * sample * here.w;
-        for (const float sign : {-1.0F, 1.0F}) {
-          strip.emplace_back(glm::dvec2(here) + static_cast<double>(sign * reach) * side, here.z, here.w);
-          across.push_back(sign * reach);
-        }
-      }
-      ribbons_.attribute(0, strip);
-      ribbons_.attribute(1, across);
-      gl.DrawArrays(GL_TRIANGLE_STRIP, 0, static_cast<GLsizei>(strip.size()));
+      draw_ribbon(frame.camera, edge, true, half_width + 1, 0.004 * body.mesh.area_radius);
     }
   }
   gl.Enable(GL_CULL_FACE);
@@ -215,7 +254,8 @@ void Renderer::draw_bodies(const Frame& frame) {
     for (const Body& body : frame.bodies) draw_body(frame, body);
     gl.Disable(GL_CLIP_DISTANCE0);
     gl.Enable(GL_CULL_FACE);
-    return draw_cut_edges(frame);
+    draw_cut_edges(frame);
+    return draw_flow_lines(frame);
   }
   const bool outlined = frame.view.outline_width > 0;
   for (const Body& body : frame.bodies) {

@@ -49,6 +49,7 @@ inline constexpr Colour tracer_dark{0.13, 0.20, 0.31};
 inline constexpr Colour ink{0.13, 0.15, 0.19};       ///< text on pictures
 inline constexpr Colour note_ink{0.70, 0.30, 0.08};
 inline constexpr Colour soft_ink{0.36, 0.40, 0.46};  ///< captions
+inline constexpr Colour flow_line_colour{0.50, 0.56, 0.65};
 inline constexpr Colour arrow_colour{0.80, 0.835, 0.88};
 inline constexpr Colour ground_top{0.985, 0.988, 0.993};
 inline constexpr Colour ground_bottom{0.885, 0.905, 0.935};

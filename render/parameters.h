@@ -12,6 +12,7 @@ inline constexpr std::array<std::string_view, 4> follow_names{"auto", "always", 
 inline constexpr std::array<std::string_view, 2> projection_names{"perspective", "orthographic"};
 inline constexpr std::array<std::string_view, 2> line_names{"material", "grid"};
 inline constexpr std::array<std::string_view, 2> background_names{"gradient", "white"};
+inline constexpr std::array<std::string_view, 3> streamline_names{"off", "laboratory", "vesicles"};
 inline constexpr std::array<std::string_view, 5> colour_by_names{"order", "viscosity_contrast", "bending_modulus",
                                                                  "density_difference", "reduced_volume"};
 
@@ -44,6 +45,7 @@ struct ViewParameters {
   double outline_width = 2.2;  ///< px at 1080
   bool tracers = true;
   bool flow_arrows = true;
+  std::string streamlines = "off";
   bool time_stamp = true;
   bool caption = true;
   bool scale_bar = true;
@@ -176,6 +178,12 @@ void visit(P& p, V&& v) {
     p.outline_width);
   v(Parameter{.name = "tracers", .unit = "", .meaning = "draw the tracer dots"}, p.tracers);
   v(Parameter{.name = "flow_arrows", .unit = "", .meaning = "draw arrows of the background flow"}, p.flow_arrows);
+  v(Parameter{.name = "streamlines",
+              .unit = "",
+              .meaning = "draw streamlines of the whole flow in place of the arrows, at rest or moving with the vesicles; for "
+                         "stills: they take seconds a frame and are laid anew in each",
+              .choices = streamline_names},
+    p.streamlines);
   v(Parameter{.name = "time_stamp", .unit = "", .meaning = "write the time"}, p.time_stamp);
   v(Parameter{.name = "caption", .unit = "", .meaning = "write the physical parameters"}, p.caption);
   v(Parameter{.name = "scale_bar", .unit = "", .meaning = "draw a bar one area radius long"}, p.scale_bar);

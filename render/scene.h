@@ -42,6 +42,16 @@ struct FlowArrows {
   double shown = 1;  ///< 0: faded into the ground
 };
 
+/// Curves in space that show the flow, with places for arrow heads.
+struct FlowLines {
+  struct Line {
+    std::vector<glm::dvec3> points;
+    bool closed = false;
+    std::vector<std::size_t> heads;  ///< indices of points
+  };
+  std::vector<Line> lines;
+};
+
 /// UTF-8; `_{...}` and `^{...}` lower and raise. Empty: not drawn.
 struct Captions {
   std::string time;             ///< "γ̇t = 12.50"
@@ -76,6 +86,7 @@ struct Frame {
   ViewParameters view;
   Captions captions;
   FlowArrows arrows;
+  FlowLines flow_lines;  ///< behind everything, or in their place in space where the style opens the membranes
   std::optional<FlowProfile> profile;
   std::optional<Inset> inset;
   std::optional<Legend> legend;  ///< needed by the style "field"

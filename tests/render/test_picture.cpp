@@ -365,6 +365,28 @@ TEST_CASE("a cut shows the inside, its rim lies on the plane, and nothing of the
   CHECK(silhouette(render::draw_frame(renderer, aside), aside.camera).area == Approx(std::numbers::pi / 2).epsilon(0.05));
 }
 
+TEST_CASE("lines of the flow lie behind closed membranes, and in their place inside an opened one") {
+  render::Renderer renderer = software();
+  const sim::State state = surfaces::state_of({surfaces::sphere()});
+  for (const bool opened : {false, true}) {
+    render::ViewParameters view = surfaces::bare_view(400, 400);
+    view.style = opened ? "cutaway" : "plain";
+    const render::Frame without = surfaces::painted(surfaces::frame_of(state, view), state);
+    render::Frame with = without;
+    with.flow_lines.lines = {{{{-1.2, -0.01, 0.3}, {0, -0.01, 0.3}, {1.2, -0.01, 0.3}}, false, {}}};
+    const Image a = render::draw_frame(renderer, without), b = render::draw_frame(renderer, with);
+    const double px = 200 / with.camera.half_width;
+    const auto changed = [&](double x, double z) {
+      const int column = static_cast<int>(200 + x * px), row = static_cast<int>(200 - z * px);
+      return !std::equal(a.at(column, row), a.at(column, row) + 3, b.at(column, row));
+    };
+    CHECK(changed(1.1, 0.3));
+    CHECK(changed(-1.1, 0.3));
+    CHECK(changed(0.1, 0.3) == opened);
+    CHECK_FALSE(changed(1.1, 0.4));
+  }
+}
+
 TEST_CASE("captions are drawn where asked for and leave the rest alone") {
   render::Renderer renderer = software();
   render::ViewParameters view = surfaces::bare_view(480, 270);
