@@ -18,6 +18,9 @@ namespace sim::file {
 
 namespace {
 
+// More than any simulation has: a file that says otherwise is damaged, and takes no memory.
+constexpr std::uint64_t largest_text = 16 << 20, largest_row = std::uint64_t{4} << 30;
+
 __extension__ using Wide = unsigned __int128;  // products of sizes cannot overflow
 
 /// An HDF5 identifier and the function that closes it.
@@ -103,6 +106,7 @@ std::string read_text(hid_t object, const char* name) {
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
   const Handle type(H5Aget_type(attribute), H5Tclose);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0) throw std::runtime_error("a text attribute");
+  if (H5Tget_size(type) > largest_text) throw std::runtime_error("a text attribute");
   std::string text(H5Tget_size(type), '\0');
   if (H5Aread(attribute, type, text.data()) < 0) throw std::runtime_error("a text attribute");
   text.resize(std::strlen(text.c_str()));
@@ -264,7 +268,9 @@ Map read_map(const std::filesystem::path& path, hid_t h5, std::uint64_t file_byt
   }
   visit_layout(map.layout, [&](const char* name, auto& value) {
     const std::int64_t number = read_number(h5, name);
-    if (number < 0 || number > (std::int64_t{1} << 40)) throw std::runtime_error(name);
+    const bool order = std::string_view(name).find("order") != std::string_view::npos;
+    const std::int64_t largest = order ? 4096 : sizeof value < sizeof number ? 1 << 24 : std::int64_t{1} << 40;
+    if (number < 0 || number > largest) throw std::runtime_error(name);
     value = static_cast<std::remove_reference_t<decltype(value)>>(number);
   });
   const Handle scene(H5Dopen2(h5, "scene", H5P_DEFAULT), H5Dclose);
@@ -281,7 +287,7 @@ Map read_map(const std::filesystem::path& path, hid_t h5, std::uint64_t file_byt
     const Place place{H5Dget_offset(dataset), d.row_bytes(), d.rows()};
     if (H5Pget_layout(plan) != H5D_CONTIGUOUS || H5Tget_class(type) != expected || shape != d.shape ||
         H5Tget_size(type) != (d.kind == Kind::text ? d.text_bytes : 8) || place.offset == HADDR_UNDEF ||
-        place.offset > file_bytes ||
+        place.offset > file_bytes || place.row_bytes > largest_row ||
         static_cast<Wide>(place.rows) * place.row_bytes > file_bytes - place.offset)
       throw std::runtime_error(fmt::format("trajectory '{}' is damaged: dataset '{}' is not what its header says",
                                            path.string(), d.name));

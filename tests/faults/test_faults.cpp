@@ -41,7 +41,8 @@ dd if=/dev/zero of=disk/filler bs=64k 2>/dev/null
 wait $child; echo "status $?"
 cp --sparse=always disk/t.h5 stopped.h5
 rm disk/filler
-$T simulate s.toml -o disk/t.h5 --resume -q --steps 2000 2>&1; echo "status $?"
+states=$($T info stopped.h5 | sed -n 's/^states *\([0-9]*\).*/\1/p')
+$T simulate s.toml -o disk/t.h5 --resume -q --steps $((states + 20)) 2>&1; echo "status $?"
 ls -A disk; cp --sparse=always disk/t.h5 continued.h5
 )");
   const Outcome outcome = desk.shell("export T; unshare -m bash script");
