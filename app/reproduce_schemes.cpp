@@ -267,7 +267,7 @@ Report reproduce_cost(const Effort& effort) {
                                 "to T = {}/χ; averages. The shapes come from bdf2 with χΔt = 0.0525 and area and volume correction: "
                                 "none of them is spoilt by a step that is too long.", every * paper_step, end),
                     "Iterations of GMRES to the relative residual in the column's head, from zero or from the velocity and "
-                    "tension 0.21 earlier; corrected spectral diagonal. The paper does not state its tolerance.",
+                    "tension 0.21 earlier; corrected spectral preconditioner. The paper does not state its tolerance.",
                     "Singular integrals per unit time, counted as the paper seems to: iterations / χΔt. Here S and D are "
                     "matrices, assembled once a step, so an iteration costs a product, not an integral."};
   TextTable table{"GMRES iterations per step.", {"λ", "p"}, {}};
@@ -302,8 +302,8 @@ Report reproduce_cost(const Effort& effort) {
                                  {p, sim::Matrix::Zero(sim::coefficient_count(p), 1)}};
           const std::vector<sim::Motion> from_zero{zero}, from_last{before};
           for (std::size_t t = 0; t < 4; ++t) {
-            sums[t] += sim::solve_suspension(s, paper_step, r, from_zero, tolerances[t], sim::Preconditioner::diagonal).iterations;
-            sums[4 + t] += sim::solve_suspension(s, paper_step, r, from_last, tolerances[t], sim::Preconditioner::diagonal).iterations;
+            sums[t] += sim::solve_suspension(s, paper_step, r, from_zero, tolerances[t], sim::Preconditioner::spectral).iterations;
+            sums[4 + t] += sim::solve_suspension(s, paper_step, r, from_last, tolerances[t], sim::Preconditioner::spectral).iterations;
           }
           sums[8] += sim::solve_suspension(s, paper_step, r, from_zero, 1e-8, sim::Preconditioner::block).iterations;
           ++samples;
@@ -337,7 +337,7 @@ Report reproduce_cost(const Effort& effort) {
   // Two vesicles: the block self solve when they are far apart, and near.
   const int p = effort.quick ? 6 : 8;
   TextTable pair{fmt::format("Two vesicles side by side along x, λ = 10, p = {}: iterations to 1e-8 from zero.", p),
-                 {"distance of the centres", "diagonal", "block self solve"}, {}};
+                 {"distance of the centres", "spectral", "block self solve"}, {}};
   for (const double distance : {100.0, 10.0, 5.0, 3.5}) {
     stop_if_interrupted();
     sim::Scene scene = sheared_pair(p, 10);
@@ -351,7 +351,7 @@ Report reproduce_cost(const Effort& effort) {
     const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero(), x);
     const std::vector<sim::Motion> zero{d.vesicles[0].motion, d.vesicles[1].motion};
     pair.rows.push_back({fmt::format("{}", distance),
-                         std::to_string(sim::solve_suspension(s, paper_step, r, zero, 1e-8, sim::Preconditioner::diagonal).iterations),
+                         std::to_string(sim::solve_suspension(s, paper_step, r, zero, 1e-8, sim::Preconditioner::spectral).iterations),
                          std::to_string(sim::solve_suspension(s, paper_step, r, zero, 1e-8, sim::Preconditioner::block).iterations)});
   }
   report.tables.push_back(pair);

@@ -1,8 +1,11 @@
-// Membrane forces on the fluid, linear in the new position or tension (33), with the geometry held fixed:
-//   H+ = (E x+_ff - 2F x+_tf + G x+_tt).n / (2 W^2)                         (33a)
-//   f_b = -kappa_b (Laplacian H+ + 2 H+ (H^2 - K)) n                        (33b); at x+ = x it is the full force (2a)
-//   f_sigma = sigma Laplacian x + grad sigma = 2 H sigma n + grad sigma      (33c), (2b)
-// f_b is minus the variation of E = kappa_b int H^2 dA, so kappa_b is twice Helfrich's modulus.
+// Membrane forces on the fluid, linear in the new position or tension (33), with the geometry held fixed. With the
+// displacement d = x+ - x of the material points and psi = d.n:
+//   H+ = H + (Laplacian psi + (4 H^2 - 2 K) psi) / 2 + d.grad H                (in place of (33a))
+//   f_b = -kappa_b (Laplacian H+ + 2 H+ (H^2 - K)) n                           (33b); at x+ = x it is the full force (2a)
+//   f_sigma = sigma Laplacian x + grad sigma = 2 H sigma n + grad sigma        (33c), (2b)
+// H+ is the first variation of H at a material point. The paper's (33a), E x+_ff - 2F x+_tf + G x+_tt along n, equals H at
+// x+ = x too, but it lacks the first derivatives of the Laplacian, which makes it singular at the poles, and the terms
+// without derivatives. f_b is minus the variation of E = kappa_b int H^2 dA, so kappa_b is twice Helfrich's modulus.
 #pragma once
 
 #include "geometry.h"
@@ -15,16 +18,21 @@ struct ForceBases {
   const Basis& full;
 };
 
-/// Eq. (33a) on the grid.
-Vector linear_mean_curvature(const Geometry&, const SecondDerivatives& x_plus);
+/// grad H on the grid, points x 3.
+Matrix curvature_gradient(const ForceBases&, const Geometry&);
 
-/// Force density on the grid, points x 3: bending of x+ (with modulus) plus tension sigma, both of degree <= p.
-Matrix membrane_force(const ForceBases&, const Geometry&, double bending_modulus, const Coefficients& x_plus,
-                      const Coefficients& sigma);
+/// H+ - H on the grid for a displacement given there (points x 3), to first order.
+Vector curvature_change(const ForceBases&, const Geometry&, const Matrix& curvature_gradient, const Matrix& displacement);
 
-/// Eq. (33b): points x 3.
-Matrix bending_force(const ForceBases&, const Geometry&, double bending_modulus, const Coefficients& x_plus);
-/// Eq. (33c): points x 3.
+/// Eq. (33b) along n, for the mean curvature h given on the grid.
+Vector bending_magnitude(const ForceBases&, const Geometry&, double bending_modulus, const Vector& h);
+
+/// A force of the given magnitude along n: points x 3.
+Matrix along_normal(const Geometry&, const Vector& magnitude);
+
+/// Eq. (2a): points x 3.
+Matrix bending_force(const ForceBases&, const Geometry&, double bending_modulus);
+/// Eq. (33c) for a tension of degree p: points x 3.
 Matrix tension_force(const ForceBases&, const Geometry&, const Coefficients& sigma);
 
 }  // namespace sim

@@ -5,12 +5,18 @@
 //   alpha u - (1-lambda) D u - S [f_b(c u) + f_sigma(sigma)] = r,      r = u_inf + S [f_b(h) + buoyancy]      (39a)
 //   -P { (1-lambda) D u + S [f_b(c u) + f_sigma(sigma)] } = P r,                                              (39b)
 // with P the surface divergence; (39b) is P applied to (39a) under P u = 0. S carries 1/(8 pi), viscosity 1 outside.
+//
+// Two things differ from the paper. The tension that the membrane is expected to have is stiff in the position as bending
+// is: a ripple of wave number k relaxes at the rate sigma k/4. Where it is positive, 2 sigma (H+ - H) n joins f_b, with the
+// first variation H+ of forces.h; the terms left out are of second order in the step. Left explicit it limits the step to
+// about 5/(sigma p). And the tension has degree p - 1: its gradient then has degree p, as velocities do. With degree p the
+// gradients of the highest degree are cut off, and the pair of velocity and tension is nearly singular.
 #pragma once
 
 #include "flows.h"
 #include "forces.h"
 #include "gmres.h"
-#include "plans.h"
+#include "waves.h"
 
 namespace sim {
 
@@ -28,28 +34,35 @@ struct Membrane {
   Geometry geometry;     ///< on the upsampled grid
   LayerMatrices layers;  ///< D assembled only when lambda differs from 1
   double radius;         ///< area radius
+  Matrix curvature_gradient;
+  Vector stretched;      ///< positive part of the expected tension on the grid
+  double mean_stretched; ///< its mean over the surface
+  SurfaceWaves waves;
   int order() const { return bases.field.order(); }
 };
 
-/// Geometry and operators at x*; upsampling is the rate of Algorithm 1, source_order 0 means p + 1.
-Membrane freeze_membrane(Plans&, const Material&, const Coefficients& position, int upsampling, int source_order);
+/// Geometry and operators at x*; upsampling is the rate of Algorithm 1, source_order 0 means p + 1. Without an expected
+/// tension (order p or less) the tension is explicit in the position, as in the paper.
+Membrane freeze_membrane(Plans&, const Material&, const Coefficients& position, int upsampling, int source_order,
+                         const Coefficients& expected_tension = {});
 
-/// Velocity (3 fields) and tension (1 field), degree p.
+/// Velocity (3 fields) and tension (1 field) in coefficients of degree p; of the tension the highest degree is zero.
 struct Motion {
   Coefficients velocity, tension;
 };
 Vector packed(const Motion&);
 Motion unpacked(const Vector&, int order);
 
-/// Eq. (36): surface divergence of a velocity, projected on degree p.
+/// Eq. (36): surface divergence of a velocity, projected on degree p - 1 and padded to p.
 Coefficients divergence(const Membrane&, const Coefficients& velocity);
 
 /// Buoyancy as a traction on the membrane, (density inside - outside) (g.x) n: points x 3. It adds up to the weight.
 Matrix buoyancy_force(const Membrane&, const Vec3& gravity);
 
-/// Forces as coefficients of degree p: f_b(c u) + f_sigma(sigma); and f_b(x) plus buoyancy.
+/// Forces as coefficients of degree p: the part linear in u and sigma of f_b(h + c u) + f_sigma(sigma), and the rest of it,
+/// with buoyancy.
 Coefficients implicit_force(const Membrane&, double c, const Motion&);
-Coefficients known_force(const Membrane&, const Vec3& gravity, const Coefficients& position);
+Coefficients known_force(const Membrane&, const Vec3& gravity, const Coefficients& history);
 
 /// (1 - lambda) D u + S f.
 Coefficients layer_velocity(const Membrane&, const Coefficients& force, const Coefficients& velocity);
@@ -60,9 +73,19 @@ Vector system_rows(const Membrane&, const Coefficients& u, const Coefficients& v
 /// Left-hand side of (39) for the packed unknowns.
 Vector apply_system(const Membrane&, double c, const Vector& unknowns);
 
-/// The corrected diagonal of section 3.5: 1/(alpha + c kappa_b n^3/(8 R^3)) for velocity, R/l_n for tension with
-/// l_n = n(n+1)(2n^2+2n-1)/((2n-1)(2n+1)(2n+3)), l_0 = 1.
-Vector preconditioner(const Membrane&, double c);
+/// The spectral preconditioner of section 3.5, corrected, and with the wave numbers k of the surface in place of n/R:
+///   velocity: 1/alpha along the membrane, 1/(alpha + c (kappa_b k^3/8 + sigma k/4)) along its normal
+///   tension:  R/l_n, l_n = n(n+1)(2n^2+2n-1)/((2n-1)(2n+1)(2n+3)), with n(n+1) = (kR)^2, l_0 = 1.
+struct SpectralInverse {
+  double alpha;
+  std::vector<Matrix> normal;   ///< what a normal velocity has less than 1/alpha; empty for c = 0
+  std::vector<Matrix> tension;  ///< both per degree
+};
+SpectralInverse spectral_inverse(const Membrane&, double c);
+Coefficients precondition_velocity(const Membrane&, const SpectralInverse&, const Coefficients& u);
+Coefficients precondition_tension(const SpectralInverse&, const Coefficients& sigma);
+/// Both, packed.
+Vector precondition(const Membrane&, const SpectralInverse&, const Vector&);
 
 /// Right-hand side r of (39a) as velocity coefficients: background flow at time t at the frozen positions, the bending
 /// force of the history h, and buoyancy.

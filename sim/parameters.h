@@ -40,7 +40,7 @@ inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 inline constexpr std::array<std::string_view, 3> time_factor_names{"constant", "oscillating", "step"};
 inline constexpr std::array<std::string_view, 3> reparametrization_names{"auto", "always", "off"};
 
-inline constexpr std::array<std::string_view, 2> preconditioner_names{"diagonal", "block"};
+inline constexpr std::array<std::string_view, 2> preconditioner_names{"spectral", "block"};
 
 /// One term of the background flow u_inf; several terms add up.
 struct FlowParameters {
@@ -161,7 +161,8 @@ struct NumericsParameters {
   double gmres_tolerance = 1e-10;
   int source_order = 0;              ///< degree of the rotated source grids; 0: p + 1
   int label_order = 0;               ///< degree of the material labels; 0: max(2p, 24)
-  std::string preconditioner = "diagonal";
+  bool implicit_tension = true;
+  std::string preconditioner = "spectral";
   int interaction_order = 0;         ///< degree of the smooth source grids between vesicles; 0: p^(3/2)
   bool near_rule = true;
   int near_latitudes = 32;
@@ -193,8 +194,11 @@ void visit(P& p, V&& v) {
               .maximum = 256, .zero_is_auto = true}, p.source_order);
   v(Parameter{.name = "label_order", .unit = "", .meaning = "order of the material labels; auto: max(2p, 24)", .minimum = 0,
               .maximum = 128, .zero_is_auto = true}, p.label_order);
+  v(Parameter{.name = "implicit_tension", .unit = "",
+              .meaning = "the force of the tension follows the new position; false: that of the old one, as in the paper"},
+    p.implicit_tension);
   v(Parameter{.name = "preconditioner", .unit = "",
-              .meaning = "of the coupled solve: the spectral diagonal, or a loose solve of each vesicle's own block",
+              .meaning = "of the coupled solve: spectral, or a loose solve of each vesicle's own block",
               .choices = preconditioner_names}, p.preconditioner);
   v(Parameter{.name = "interaction_order", .unit = "",
               .meaning = "order of the smooth source grids between vesicles; auto: p^(3/2)", .minimum = 0, .maximum = 512,

@@ -43,8 +43,16 @@ RotationPlan::RotationPlan(int order) : order_(order) {
   turned << s.col(0), -s.col(2), s.col(1);  // Rx(pi/2): y -> z, z -> -y
   const Matrix projection = basis_functions(order, s).transpose() * basis.weights().asDiagonal();
   const Matrix values = basis_functions(order, turned);
-  for (int n = 0; n <= order; ++n)
+  for (int n = 0; n <= order; ++n) {
     quarter_.push_back(projection.middleRows(n * n, 2 * n + 1) * values.middleCols(n * n, 2 * n + 1));
+    Matrix z = Matrix::Zero(2 * n + 1, 2 * n + 1);  // L_z = d/dphi
+    for (int m = 1; m <= n; ++m) {
+      z(n + m, n - m) = m;
+      z(n - m, n + m) = -m;
+    }
+    const Matrix y = -quarter_[n].transpose() * z * quarter_[n];  // the quarter turn lays z on -y
+    generators_.push_back({z * y - y * z, y, z});                 // [L_y, L_z] = -L_x
+  }
 }
 
 Matrix RotationPlan::to_pole(const Matrix& coefficients, double theta, double phi) const {

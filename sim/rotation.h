@@ -5,12 +5,16 @@
 
 #include "basis.h"
 
+#include <array>
+
 namespace sim {
 
 class RotationPlan {
  public:
   explicit RotationPlan(int order);
   int order() const { return order_; }
+  /// The rotations L = s x grad on the coefficients of degree n, one antisymmetric matrix an axis.
+  const std::array<Matrix, 3>& generators(int n) const { return generators_[n]; }
   /// Coefficients of f(Q s), field by field: (p+1)^2 x fields in and out.
   Matrix to_pole(const Matrix& coefficients, double theta, double phi) const;
   /// The transpose: functionals of the rotated coefficients become functionals of the original ones.
@@ -19,6 +23,7 @@ class RotationPlan {
  private:
   int order_;
   std::vector<Matrix> quarter_;  ///< per degree: coefficients of f(Rx(pi/2) s)
+  std::vector<std::array<Matrix, 3>> generators_;
 };
 
 }  // namespace sim

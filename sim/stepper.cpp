@@ -38,7 +38,10 @@ Suspension freeze(const Setting& s, const Dynamics& d, std::span<const Coefficie
   const NumericsParameters& n = s.scene.numerics;
   SuspensionOptions options{n.source_order, {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
                             n.repulsion_strength, n.repulsion_range};
-  return freeze_suspension(s.plans, s.materials, frozen, upsamplings(d), options);
+  std::vector<Coefficients> expected;
+  if (n.implicit_tension)
+    for (const VesicleDynamics& v : d.vesicles) expected.push_back(v.motion.tension);
+  return freeze_suspension(s.plans, s.materials, frozen, upsamplings(d), options, expected);
 }
 
 void require_converged(const char* what, bool converged, double residual, int iterations) {
@@ -50,7 +53,7 @@ void require_converged(const char* what, bool converged, double residual, int it
 SuspensionSolve solve(const Setting& s, const Suspension& suspension, double c, std::span<const Coefficients> r,
                       std::span<const Motion> guess) {
   const Preconditioner kind =
-      s.scene.numerics.preconditioner == "block" ? Preconditioner::block : Preconditioner::diagonal;
+      s.scene.numerics.preconditioner == "block" ? Preconditioner::block : Preconditioner::spectral;
   SuspensionSolve result = solve_suspension(suspension, c, r, guess, s.scene.numerics.gmres_tolerance, kind);
   require_converged("linear solver", result.converged, result.residual, result.iterations);
   return result;

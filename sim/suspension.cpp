@@ -7,11 +7,13 @@
 namespace sim {
 
 Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, std::span<const Coefficients> positions,
-                             std::span<const int> upsamplings, const SuspensionOptions& options) {
+                             std::span<const int> upsamplings, const SuspensionOptions& options,
+                             std::span<const Coefficients> expected_tensions) {
   const int n = int(positions.size());
   std::vector<std::optional<Membrane>> frozen(n);
   const auto freeze = [&](int i) {
-    frozen[i].emplace(freeze_membrane(plans, materials[i], positions[i], upsamplings[i], options.source_order));
+    frozen[i].emplace(freeze_membrane(plans, materials[i], positions[i], upsamplings[i], options.source_order,
+                                      expected_tensions.empty() ? Coefficients{} : expected_tensions[i]));
   };
   if (n == 1) {
     freeze(0);  // the threads then share the assembly
@@ -99,14 +101,18 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
     parallel_for(n, [&](int i) { rows[i] = system_rows(s.membranes[i], motions[i].velocity, velocity[i]); });
     return join(rows);
   };
-  std::vector<Vector> diagonals, right, start;
+  std::vector<SpectralInverse> inverses;
+  std::vector<Vector> right, start;
   for (int i = 0; i < n; ++i) {
-    diagonals.push_back(preconditioner(s.membranes[i], c));
+    inverses.push_back(spectral_inverse(s.membranes[i], c));
     right.push_back(packed({forcing[i], divergence(s.membranes[i], forcing[i])}));
     start.push_back(packed(guess[i]));
   }
-  const Vector diagonal = join(diagonals);
-  const auto by_diagonal = [&](const Vector& y) { return Vector(diagonal.cwiseProduct(y)); };
+  const auto by_spectrum = [&](const Vector& y) {
+    std::vector<Vector> parts = split(s, y);
+    parallel_for(n, [&](int i) { parts[i] = precondition(s.membranes[i], inverses[i], parts[i]); });
+    return join(parts);
+  };
   const auto by_block = [&](const Vector& y) {
     constexpr double loose = 1e-3;  // GMRES is flexible; tighter inner solves save no outer iteration
     const std::vector<Vector> parts = split(s, y);
@@ -114,14 +120,14 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
     parallel_for(n, [&](int i) {
       const Membrane& m = s.membranes[i];
       solved[i] = gmres([&](const Vector& v) { return apply_system(m, c, v); },
-                        [&](const Vector& v) { return Vector(diagonals[i].cwiseProduct(v)); }, parts[i],
+                        [&](const Vector& v) { return precondition(m, inverses[i], v); }, parts[i],
                         Vector::Zero(parts[i].size()), loose, 60)
                       .solution;
     });
     return join(solved);
   };
   constexpr int most_iterations = 300;
-  const GmresResult result = gmres(apply, kind == Preconditioner::block ? LinearMap(by_block) : LinearMap(by_diagonal),
+  const GmresResult result = gmres(apply, kind == Preconditioner::block ? LinearMap(by_block) : LinearMap(by_spectrum),
                                    join(right), join(start), tolerance, most_iterations);
   SuspensionSolve solve{{}, result.iterations, result.residual, result.converged};
   const std::vector<Vector> parts = split(s, result.solution);

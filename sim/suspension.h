@@ -17,9 +17,10 @@ struct SuspensionOptions {
   double repulsion_strength = 0, repulsion_range = 0.05;  ///< strength 0: none
 };
 
-/// Geometry and operators of all vesicles at x*.
+/// Geometry and operators of all vesicles at x*; expected tensions: see freeze_membrane().
 Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const Coefficients> positions,
-                             std::span<const int> upsamplings, const SuspensionOptions&);
+                             std::span<const int> upsamplings, const SuspensionOptions&,
+                             std::span<const Coefficients> expected_tensions = {});
 
 /// r of (39a) for every vesicle: background flow, and the velocities that the bending of the histories, buoyancy and
 /// repulsion cause, one's own and the others'.
@@ -31,7 +32,7 @@ std::vector<Coefficients> suspension_forcing(const Suspension&, std::span<const 
 std::vector<Coefficients> interaction_of(const Suspension&, std::span<const Coefficients> forces);
 
 enum class Preconditioner {
-  diagonal,  ///< the corrected diagonal of section 3.5
+  spectral,  ///< the corrected one of section 3.5
   block,     ///< a loose GMRES solve of each self block
 };
 

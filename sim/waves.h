@@ -1,0 +1,33 @@
+// How fast the spherical harmonics of one degree oscillate along a surface: its Laplacian, reduced to each degree.
+//
+// On the unit sphere the rotations L = s x grad keep a degree n, and L.L f = -n(n+1) f. The inverse metric of a surface,
+// turned by a right angle in the tangent plane of the parameter sphere, is fitted by a constant matrix C, so that
+//   Laplacian f ~ sum_ab C_ab L_a L_b f,
+// exact for a sphere, and for an ellipsoid up to the factor by which its area is stretched. Each degree then has 2n+1
+// orthonormal modes with wave numbers of their own: long waves along a prolate, short ones round it.
+#pragma once
+
+#include "geometry.h"
+#include "plans.h"
+
+namespace sim {
+
+struct SurfaceWaves {
+  const Basis& basis;           ///< degree p + 1 on its own grid: u.n of a velocity of degree p reaches that far
+  Matrix n;                     ///< unit normals on that grid, points x 3
+  std::vector<Matrix> modes;    ///< of degree n = 0..p+1: (2n+1) x (2n+1), one mode a column
+  std::vector<Vector> numbers;  ///< their wave numbers k, 1/length
+};
+
+SurfaceWaves surface_waves(Plans&, const Coefficients& position);
+
+/// Per degree the matrix that multiplies each mode by gain(k).
+template <class Gain>
+std::vector<Matrix> mode_filter(const SurfaceWaves& w, Gain&& gain) {
+  std::vector<Matrix> blocks;
+  for (std::size_t n = 0; n < w.modes.size(); ++n)
+    blocks.push_back(w.modes[n] * w.numbers[n].unaryExpr(gain).asDiagonal() * w.modes[n].transpose());
+  return blocks;
+}
+
+}  // namespace sim
