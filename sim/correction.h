@@ -18,5 +18,7 @@ struct Correction {
 
 /// On a sphere n and H n coincide; the minimum-norm solution is taken.
 Correction area_volume_correction(Plans&, const Coefficients& position, double area, double volume);
+/// The same with the geometry of the position on the grid of measure_order().
+Correction area_volume_correction(Plans&, const Coefficients& position, const Geometry&, double area, double volume);
 
 }  // namespace sim

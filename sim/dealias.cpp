@@ -20,8 +20,8 @@ int upsampling_rate(Plans& plans, const Coefficients& position, double tolerance
   return most;
 }
 
-double curvature_tail(Plans& plans, const Coefficients& position, int grid_order) {
-  return tail_share(mean_curvature(plans, position, grid_order), 3 * position.order / 4 + 1);
+double curvature_tail(const Basis& basis, const Geometry& geometry) {
+  return tail_share(basis.analyze(Matrix(geometry.H)), 3 * basis.order() / 4 + 1);
 }
 
 }  // namespace sim

@@ -14,6 +14,7 @@ Coefficients mean_curvature(Plans&, const Coefficients& position, int grid_order
 int upsampling_rate(Plans&, const Coefficients& position, double tolerance, int most = 8);
 
 /// Share of the mean curvature's spectrum in its last quarter of degrees, n > 3p/4: how far a shape is from resolved.
-double curvature_tail(Plans&, const Coefficients& position, int grid_order);
+/// `geometry` of a surface of degree p, on the grid of `basis`.
+double curvature_tail(const Basis& basis, const Geometry& geometry);
 
 }  // namespace sim

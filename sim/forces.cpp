@@ -6,17 +6,17 @@ Matrix curvature_gradient(const ForceBases& bases, const Geometry& g) {
   return surface_gradient(g, bases.full.first(bases.full.analyze(Matrix(g.H))));
 }
 
-Vector curvature_change(const ForceBases& bases, const Geometry& g, const Matrix& gradient, const Matrix& displacement) {
+Vector curvature_change(const Basis& basis, const Geometry& g, const Matrix& gradient, const Matrix& displacement) {
   const Vector psi = displacement.cwiseProduct(g.n).rowwise().sum();
-  const SecondDerivatives d = bases.full.second(bases.full.analyze(Matrix(psi)));
+  const SecondDerivatives d = basis.second(basis.analyze(Matrix(psi)));
   return 0.5 * surface_laplacian(g, d).array() + (2 * g.H.array().square() - g.K.array()) * psi.array() +
          displacement.cwiseProduct(gradient).rowwise().sum().array();
 }
 
 // Eq. (33b)
-Vector bending_magnitude(const ForceBases& bases, const Geometry& g, double modulus, const Vector& h) {
+Vector bending_magnitude(const Basis& basis, const Geometry& g, double modulus, const Vector& h) {
   if (modulus == 0) return Vector::Zero(h.size());
-  const SecondDerivatives d = bases.full.second(bases.full.analyze(Matrix(h)));
+  const SecondDerivatives d = basis.second(basis.analyze(Matrix(h)));
   return -modulus * (surface_laplacian(g, d).array() + 2 * h.array() * (g.H.array().square() - g.K.array()));
 }
 
@@ -25,7 +25,7 @@ Matrix along_normal(const Geometry& g, const Vector& magnitude) {
 }
 
 Matrix bending_force(const ForceBases& bases, const Geometry& g, double modulus) {
-  return along_normal(g, bending_magnitude(bases, g, modulus, g.H));
+  return along_normal(g, bending_magnitude(bases.full, g, modulus, g.H));
 }
 
 // Eq. (33c)

@@ -21,11 +21,11 @@ struct ForceBases {
 /// grad H on the grid, points x 3.
 Matrix curvature_gradient(const ForceBases&, const Geometry&);
 
-/// H+ - H on the grid for a displacement given there (points x 3), to first order.
-Vector curvature_change(const ForceBases&, const Geometry&, const Matrix& curvature_gradient, const Matrix& displacement);
+/// H+ - H on the grid for a displacement given there (points x 3), to first order; the basis carries d.n.
+Vector curvature_change(const Basis&, const Geometry&, const Matrix& curvature_gradient, const Matrix& displacement);
 
-/// Eq. (33b) along n, for the mean curvature h given on the grid.
-Vector bending_magnitude(const ForceBases&, const Geometry&, double bending_modulus, const Vector& h);
+/// Eq. (33b) along n, for the mean curvature h given on the grid; the basis carries h.
+Vector bending_magnitude(const Basis&, const Geometry&, double bending_modulus, const Vector& h);
 
 /// A force of the given magnitude along n: points x 3.
 Matrix along_normal(const Geometry&, const Vector& magnitude);

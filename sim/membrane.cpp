@@ -23,9 +23,10 @@ Membrane freeze_membrane(Plans& plans, const Material& material, const Coefficie
     stretched = bases.field.synthesize(resized(expected_tension, p)).values.col(0).cwiseMax(0);
   const double mean_stretched = integrate(g, stretched) / area;
   Matrix gradient = curvature_gradient(bases, g);
-  return {bases,          material,       std::move(g),
-          std::move(layers), radius,      std::move(gradient),
-          std::move(stretched), mean_stretched, surface_waves(plans, position)};
+  // Degree p would leave the ripples of degree p + 1, ... without stiffness; with p + 2 and p + 4 runs agree with the full q.
+  const Basis& ripples = plans.basis(std::min(q, p + 4), q);
+  return {bases,  ripples,           material, std::move(g), std::move(layers),
+          radius, std::move(gradient), std::move(stretched), mean_stretched, surface_waves(plans, position)};
 }
 
 Vector packed(const Motion& m) {
@@ -57,7 +58,7 @@ namespace {
 
 /// What a displacement (points x 3) adds to the bending force and, by the expected tension, to the tension force; along n.
 Vector displacement_magnitude(const Membrane& m, const Vector& bent) {
-  return bending_magnitude(m.bases, m.geometry, m.material.bending_modulus, bent) + 2 * m.stretched.cwiseProduct(bent);
+  return bending_magnitude(m.ripples, m.geometry, m.material.bending_modulus, bent) + 2 * m.stretched.cwiseProduct(bent);
 }
 
 }  // namespace
@@ -66,7 +67,7 @@ Coefficients implicit_force(const Membrane& m, double c, const Motion& y) {
   Matrix force = tension_force(m.bases, m.geometry, y.tension);
   if (c != 0) {
     const Matrix displacement = c * m.bases.field.synthesize(y.velocity).values;
-    const Vector bent = curvature_change(m.bases, m.geometry, m.curvature_gradient, displacement);
+    const Vector bent = curvature_change(m.ripples, m.geometry, m.curvature_gradient, displacement);
     force += along_normal(m.geometry, displacement_magnitude(m, bent));
   }
   return m.bases.field.analyze(force);
@@ -76,7 +77,7 @@ Coefficients known_force(const Membrane& m, const Vec3& gravity, const Coefficie
   Matrix force = bending_force(m.bases, m.geometry, m.material.bending_modulus);
   const Matrix displacement = m.bases.field.synthesize(history).values - m.geometry.x.value;
   if (!displacement.isZero(0)) {
-    const Vector bent = curvature_change(m.bases, m.geometry, m.curvature_gradient, displacement);
+    const Vector bent = curvature_change(m.ripples, m.geometry, m.curvature_gradient, displacement);
     force += along_normal(m.geometry, displacement_magnitude(m, bent));
   }
   if (m.material.density_difference != 0) force += buoyancy_force(m, gravity);

@@ -30,6 +30,7 @@ struct Material {
 
 struct Membrane {
   ForceBases bases;
+  const Basis& ripples;  ///< degree p + 4 on the upsampled grid: the normal part of a displacement of degree p
   Material material;
   Geometry geometry;     ///< on the upsampled grid
   LayerMatrices layers;  ///< D assembled only when lambda differs from 1

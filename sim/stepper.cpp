@@ -145,9 +145,11 @@ Advance explicit_position(const Setting& s, const Dynamics& d, double dt) {
   });
 }
 
-double energy_of(Plans& plans, const Coefficients& x) {
-  return measures(geometry(plans.basis(x.order, measure_order(x.order)), x)).h_squared / four_pi;
+Geometry measured_geometry(Plans& plans, const Coefficients& x) {
+  return geometry(plans.basis(x.order, measure_order(x.order)), x);
 }
+
+double energy_of(const Geometry& g) { return integrate(g, g.H.cwiseAbs2()) / four_pi; }
 
 /// Moves the grid points along the membrane and carries everything that belongs to the material. False: it would not pay.
 bool relabel_vesicle(const Setting& s, VesicleDynamics& v) {
@@ -172,27 +174,25 @@ bool relabel_vesicle(const Setting& s, VesicleDynamics& v) {
 bool relabelling_due(const std::string& mode, const VesicleDynamics& v) {
   if (mode == "off") return false;
   if (mode == "always") return true;
-  constexpr double growth = 1.5, negligible = 5e-3;
+  constexpr double growth = 2, negligible = 1e-2;
   return high_degree_share(v.position) > std::max(growth * v.high_share, negligible);
 }
 
 /// Shifts x to the area and volume of the start; returns the longest shift.
-double correct(const Setting& s, VesicleDynamics& v) {
-  const Correction c = area_volume_correction(s.plans, v.position, v.area, v.volume);
+double correct(const Setting& s, VesicleDynamics& v, const Geometry& g) {
+  const Correction c = area_volume_correction(s.plans, v.position, g, v.area, v.volume);
   if (!c.converged || c.largest > 0.1 * std::sqrt(v.area / four_pi))
     throw StepFailure(fmt::format("the area and volume correction failed (shift {:.1e})", c.largest));
   v.position.values += c.shift.values;
   return c.largest;
 }
 
-void check_step(const NumericsParameters& n, const Coefficients& before, const Coefficients& after, Plans& plans,
-                double energy_before) {
-  if (!after.values.allFinite()) throw StepFailure("a position is not finite");
-  const Basis& basis = plans.basis(after.order, measure_order(after.order));
-  const double change = area_volume(basis, after).area / area_volume(basis, before).area - 1;
+/// `after`: the geometry that the step has led to.
+void check_step(const NumericsParameters& n, const Geometry& after, double area_before, double energy_before) {
+  const double change = after.dA.sum() / area_before - 1;
   if (!(std::abs(change) <= n.step_area_bound))
     throw StepFailure(fmt::format("the area changed by {:.2g} % in one step", 100 * change));
-  const double energy = energy_of(plans, after);
+  const double energy = energy_of(after);
   if (!(std::abs(energy - energy_before) <= n.step_energy_bound * energy_before))
     throw StepFailure(fmt::format("the bending energy jumped from {:.4g} to {:.4g}", energy_before, energy));
 }
@@ -234,11 +234,11 @@ Dynamics initial_dynamics(const Setting& s) {
     const AreaVolume av = area_volume(s.plans.basis(p, measure_order(p)), v.position);
     v.area = av.area;
     v.volume = av.volume;
-    v.energy = energy_of(s.plans, v.position);
+    v.energy = energy_of(measured_geometry(s.plans, v.position));
     const NumericsParameters& n = s.scene.numerics;
     v.upsampling = n.upsampling > 0 ? n.upsampling : upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
     v.upsampling_due = 1;
-    v.tail = curvature_tail(s.plans, v.position, v.upsampling * p);
+    v.tail = curvature_tail(s.plans.basis(p, measure_order(p)), measured_geometry(s.plans, v.position));
     v.high_share = high_degree_share(v.position);
     d.vesicles.push_back(std::move(v));
   }
@@ -255,32 +255,37 @@ namespace {
 /// Checks, correction, relabelling and renewal of one vesicle after its scheme has moved it.
 VesicleStep finish_vesicle(const Setting& s, VesicleDynamics& v, Coefficients position, Motion motion, double time) {
   const NumericsParameters& n = s.scene.numerics;
-  check_step(n, v.position, position, s.plans, v.energy);
+  if (!position.values.allFinite()) throw StepFailure("a position is not finite");
+  const int p = position.order;
+  const Basis& measured = s.plans.basis(p, measure_order(p));
+  Geometry moved = geometry(measured, position);
+  check_step(n, moved, n.correction ? v.area : area_volume(measured, v.position).area, v.energy);
   v.displacement.values = position.values - v.position.values;
   v.position = std::move(position);
   v.motion = std::move(motion);
   VesicleStep record;
-  if (n.correction) record.correction = correct(s, v);
+  if (n.correction) record.correction = correct(s, v, moved);
   if (relabelling_due(n.reparametrization, v) && relabel_vesicle(s, v)) {
     record.relabelled = 1;
-    if (n.correction) record.correction = std::max(record.correction, correct(s, v));
+    if (n.correction) record.correction = std::max(record.correction, correct(s, v, measured_geometry(s.plans, v.position)));
     if (labels_wound_up(v.labels)) {
       v.labels = fresh_labels(v.labels.order);
       ++v.labels_laid;
       v.labels_laid_time = time;
     }
   }
-  v.energy = energy_of(s.plans, v.position);
+  const Geometry now = measured_geometry(s.plans, v.position);
+  const Measures after = measures(now);
+  v.energy = after.h_squared / four_pi;
   if (n.upsampling == 0 && time >= v.upsampling_due) {
     v.upsampling = upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
     v.upsampling_due = time + 1;
   }
-  const AreaVolume av = area_volume(s.plans.basis(v.position.order, measure_order(v.position.order)), v.position);
-  record.area_error = av.area / v.area - 1;
-  record.volume_error = av.volume / v.volume - 1;
+  record.area_error = after.area / v.area - 1;
+  record.volume_error = after.volume / v.volume - 1;
   record.energy = v.energy;
   record.upsampling = v.upsampling;
-  record.tail = v.tail = curvature_tail(s.plans, v.position, v.upsampling * v.position.order);
+  record.tail = v.tail = curvature_tail(measured, now);
   return record;
 }
 

@@ -42,10 +42,9 @@ TEST_CASE("the linear change of H is its first variation, and a rigid motion lea
   const int p = 8, q = 40;
   const Coefficients x = test::potato(p), v = test::smooth_field(p, 5, 3, 21);
   const Basis field(p, q), full(q, q);
-  const ForceBases bases{field, full};
   const Geometry g = geometry(field, x);
-  const Matrix slope = curvature_gradient(bases, g);
-  const Vector change = curvature_change(bases, g, slope, field.synthesize(v).values);
+  const Matrix slope = curvature_gradient({field, full}, g);
+  const Vector change = curvature_change(full, g, slope, field.synthesize(v).values);
   const auto moved = [&](double s) { return geometry(field, {p, x.values + s * v.values}).H; };
   const double h = 1e-3;
   // Fourth-order difference at fixed parameters, that is at material points.
@@ -54,7 +53,7 @@ TEST_CASE("the linear change of H is its first variation, and a rigid motion lea
   Matrix rigid(field.points(), 3);
   for (Eigen::Index k = 0; k < rigid.rows(); ++k)
     rigid.row(k) = Vec3(0.3, -1, 0.7).cross(Vec3(g.x.value.row(k).transpose())).transpose() + Eigen::RowVector3d(1, 2, 3);
-  CHECK(curvature_change(bases, g, slope, rigid).cwiseAbs().maxCoeff() < 1e-5 * g.H.cwiseAbs().maxCoeff());
+  CHECK(curvature_change(full, g, slope, rigid).cwiseAbs().maxCoeff() < 1e-5 * g.H.cwiseAbs().maxCoeff());
 }
 
 TEST_CASE("a sphere feels no bending force, and a constant tension presses it by 2 sigma / R") {
