@@ -1,11 +1,13 @@
 // Cost of the parts of a step and of the whole. The limits: a step of one vesicle with viscosity contrast 10 takes at most
 // 5 ms at order 8 and 80 ms at order 16, on one core.
+#include "sim/placements.h"
 #include "tests/sim/surfaces.h"
 
 #include <benchmark/benchmark.h>
 
 #include <fftw3.h>
 #include <omp.h>
+#include <sys/resource.h>
 
 namespace {
 
@@ -126,6 +128,71 @@ void evaluation(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(evaluate(s, d));
 }
 
+/// The kernel alone, single and double layer: sources and targets of one vesicle at p = 8, all in the first cache.
+void direct_sum(benchmark::State& state) {
+  const Eigen::Index count = 200;
+  Sources s;
+  s.points = Matrix::Random(count, 3);
+  s.normals = Matrix::Random(count, 3);
+  s.area = Vector::Ones(count);
+  const Matrix force = Matrix::Random(count, 3), dual = Matrix::Random(count, 3);
+  const Matrix targets = (Matrix::Random(count, 3).array() + 5).matrix();
+  Matrix velocity = Matrix::Zero(count, 3);
+  for (auto _ : state) add_direct_sum(s, force, state.range(0) ? &dual : nullptr, targets, velocity);
+  state.counters["pairs"] = benchmark::Counter(double(count * count), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// scenes/suspension.toml with another number of vesicles.
+Scene suspension_scene(int count) {
+  Scene scene = test::shear_scene(prolate(8, 1), 0.1, 1, "globally-implicit");
+  scene.vesicles[0].reduced_volume = 0.9;
+  scene.numerics.gmres_tolerance = 1e-6;
+  PlacementParameters lattice;
+  lattice.count = count;
+  lattice.volume_fraction = 0.06;
+  lattice.jitter = 0.1;
+  scene.placements.push_back(lattice);
+  return placed(scene);
+}
+
+/// One product with the interactions of all vesicles, far, fine and near; on all processors.
+void suspension_product(benchmark::State& state) {
+  omp_set_num_threads(omp_get_num_procs());
+  Plans plans;
+  const Scene scene = suspension_scene(int(state.range(0)));
+  const Setting s = make_setting(scene, plans);
+  const Dynamics d = initial_dynamics(s);
+  std::vector<Coefficients> x;
+  std::vector<Densities> densities;
+  for (const VesicleDynamics& v : d.vesicles) {
+    x.push_back(v.position);
+    densities.push_back({v.position, v.position});
+  }
+  const Interaction w = plan_interaction(plans, x, s.materials, {});
+  double pairs = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = 0; j < x.size(); ++j)
+      pairs += double(w.pairs[i][j].coarse.size()) * double(w.coarse_sources[j].area.size()) +
+               double(w.pairs[i][j].fine.size()) * double(w.sources[j].area.size());
+  for (auto _ : state) benchmark::DoNotOptimize(induced_velocity(w, densities));
+  state.counters["pairs"] = benchmark::Counter(pairs, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// One step of backward Euler of all of them, and the most memory the process has held so far.
+void suspension_step(benchmark::State& state) {
+  omp_set_num_threads(omp_get_num_procs());
+  Plans plans;
+  const Scene scene = suspension_scene(int(state.range(0)));
+  const Setting s = make_setting(scene, plans);
+  const Dynamics d = initial_dynamics(s);
+  int iterations = 0;
+  for (auto _ : state) iterations = take_step(s, d, 0.1).record.iterations;
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  state.counters["iterations"] = iterations;
+  state.counters["peak_MB"] = double(used.ru_maxrss) / 1024;
+}
+
 }  // namespace
 
 #define ORDERS DenseRange(8, 16, 4)->Arg(24)->Unit(unit)
@@ -143,6 +210,10 @@ BENCHMARK_CAPTURE(step, contrast_1, 1.0, "off")->HUNDRED_STEPS;
 BENCHMARK_CAPTURE(step, contrast_10, 10.0, "off")->HUNDRED_STEPS;
 BENCHMARK_CAPTURE(step, contrast_1_with_reparametrization, 1.0, "auto")->HUNDRED_STEPS;
 BENCHMARK_CAPTURE(step, contrast_10_with_reparametrization, 10.0, "auto")->HUNDRED_STEPS;
+BENCHMARK(direct_sum)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+#define MANY Arg(8)->Arg(64)->Arg(256)->Iterations(1)->UseRealTime()->MeasureProcessCPUTime()->Unit(unit)
+BENCHMARK(suspension_product)->MANY;
+BENCHMARK(suspension_step)->MANY;
 BENCHMARK(evaluation)->Arg(8)->Arg(16)->Unit(unit);
 
 BENCHMARK_MAIN();
