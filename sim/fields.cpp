@@ -26,7 +26,7 @@ Vector gaussian_curvature(const FieldSite& s) { return s.geometry.K; }
 
 Vector bending(const FieldSite& s) {
   const ForceBases bases{s.basis, s.full};
-  return row_dot(bending_force(bases, s.geometry, s.bending_modulus, s.state.vesicles[s.vesicle].position), s.geometry.n);
+  return row_dot(bending_force(bases, s.geometry, s.bending_modulus), s.geometry.n);
 }
 
 Vector tension_density(const FieldSite& s) {
