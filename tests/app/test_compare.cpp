@@ -127,7 +127,7 @@ TEST_CASE("a picture may have several accepted baselines", "[compare]") {
   CHECK(desk.pair("expected/a.png", "actual/a.png").status == 0);
 }
 
-TEST_CASE("--update puts new pictures in the place of old ones and says so", "[compare]") {
+TEST_CASE("compare --update puts new pictures in the place of old ones and says so", "[compare]") {
   const Desk desk;
   desk.put("actual/a.png", with_square(20, 20));
   desk.put("actual/deep/new.png", picture());
