@@ -32,6 +32,7 @@ Membrane freeze_membrane(Plans& plans, const Material& material, const Coefficie
 Vector packed(const Motion& m) {
   Vector y(m.velocity.values.size() + m.tension.values.size());
   y << m.velocity.values.reshaped(), m.tension.values.reshaped();
+  y.tail(2 * m.tension.order + 1).setZero();  // a tension carried through a relabelling has a highest degree
   return y;
 }
 
@@ -181,7 +182,7 @@ Solve solve_tension(const Membrane& m, const Coefficients& r, const Motion& gues
   const GmresResult result = gmres(
       [&](const Vector& y) { return Vector(-divergence(m, tension_velocity(m, {p, y})).values.col(0)); },
       [&](const Vector& y) { return Vector(precondition_tension(inverse, {p, y}).values.col(0)); }, divergence(m, r).values.col(0),
-      guess.tension.values.col(0), tolerance, most_iterations);
+      packed(guess).tail(coefficient_count(p)), tolerance, most_iterations);
   const Coefficients sigma{p, result.solution};
   const Coefficients u{p, (r.values + tension_velocity(m, sigma).values) / m.material.alpha()};
   return {{u, sigma}, result.iterations, result.residual, result.converged};
