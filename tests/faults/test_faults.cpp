@@ -289,6 +289,8 @@ TEST_CASE("a locale with decimal commas changes no number that is read or writte
   if (!german) WARN("the locale de_DE.UTF-8 cannot be made here; only LC_ALL is set");
   std::vector<std::string> commas = preload("foreign_locale");
   commas.insert(commas.end(), {"LC_ALL=de_DE.UTF-8", "LOCPATH=" + desk.path().string()});
+  // The C library keeps its list of locale paths until the end, which a leak checker takes for a loss.
+  commas.push_back("ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0");
   REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("a"), "-q"}).status == 0);
   REQUIRE(desk.with(commas, {"run", desk.file("s.toml"), "-o", desk.file("b"), "-q"}).status == 0);
   REQUIRE(desk({"export", desk.file("a/trajectory.h5"), "--csv", desk.file("a.csv")}).status == 0);
