@@ -159,7 +159,7 @@ def poiseuille(s):
             out.append(s.check(f"{scene}: largest {what} error", largest(rows, f"{what}_error"), None, 1e-6))
         last = rows[-1]
         if scene == "slipper":
-            out.append(s.check("slipper: tilt (degrees)", last["inclination_deg"], -30.7, 0.5.0, 2))
+            out.append(s.check("slipper: tilt (degrees)", last["inclination_deg"], -30.7, 0.5, 2))
             out.append(s.check("slipper: distance from the axis", last["center_z"], 0.236, 0.015))
         else:
             out.append(s.check("parachute: distance from the axis", abs(last["center_y"]) + abs(last["center_z"]), None, 1e-3))
