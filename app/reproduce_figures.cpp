@@ -1,7 +1,7 @@
 // Figures 2 and 3: aliasing, and the spectra that make it matter.
 #include "reproduce_items.h"
 
-#include "render/plot.h"
+#include "render/plot_marks.h"
 #include "render/section.h"
 #include "sim/dealias.h"
 #include "sim/legendre.h"

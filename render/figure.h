@@ -3,7 +3,7 @@
 
 #include "canvas.h"
 #include "parameters.h"
-#include "plot.h"
+#include "plot_marks.h"
 #include "streamlines.h"
 
 #include "sim/catalogue.h"

@@ -4,6 +4,8 @@
 
 #include "plot.h"
 
+#include "sim/types.h"
+
 #include <functional>
 #include <vector>
 

@@ -27,4 +27,10 @@ const std::vector<Theme>& themes();
 /// follows it; 0: the theme's own.
 Theme find_theme(std::string_view name, double font_size = 0);
 
+/// Colours of curves: those of the palette, lightened on a dark ground.
+Colour on_ground(const Theme& theme, const Colour& colour);
+Colour curve_colour(const Theme& theme, std::size_t curve);
+/// Of the outline of a vesicle: the hue that its body has in pictures.
+Colour vesicle_colour(const Theme& theme, std::size_t vesicle);
+
 }  // namespace render

@@ -1,7 +1,7 @@
 // Figures and their files.
 #include "render/figure.h"
 #include "render/image.h"
-#include "render/plot.h"
+#include "render/plot_marks.h"
 
 #include "surfaces.h"
 #include "tests/support/temporary_folder.h"
