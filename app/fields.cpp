@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace app {
 
@@ -81,12 +82,15 @@ const render::ColourMapRow& map_for(const render::ViewParameters& view, bool bot
   return render::find_colour_map(view.colour_map.value_or(both_signs ? "blue-red" : "viridis"));
 }
 
-void give_range(render::Legend& legend, const render::ViewParameters& view, std::vector<double>& values, bool has_sign) {
+/// `end`: an automatic range ends there at the latest, unless all values are larger.
+void give_range(render::Legend& legend, const render::ViewParameters& view, std::vector<double>& values, bool has_sign,
+                double end = std::numeric_limits<double>::infinity()) {
   double low = 0, high = 1, least = 0, most = 0;
   if (!values.empty()) {
     constexpr double outermost = 0.005;
     low = quantile(values, outermost);
     high = quantile(values, 1 - outermost);
+    if (low < end) high = std::min(high, end);
     least = *std::min_element(values.begin(), values.end());
     most = *std::max_element(values.begin(), values.end());
   }
@@ -166,7 +170,7 @@ Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vecto
   }
   p.legend.emplace();
   p.legend->label = label_of(p, settings.scene);
-  give_range(*p.legend, view, values, p.field->has_sign);
+  give_range(*p.legend, view, values, p.field->has_sign, p.field->automatic_end);
   return p;
 }
 

@@ -10,6 +10,8 @@
 #include "catalogue.h"
 #include "parameters.h"
 
+#include <limits>
+
 namespace sim {
 
 /// One vesicle at one instant, on the grid on which its fields are sampled.
@@ -42,6 +44,7 @@ struct FieldRow {
   bool has_sign;            ///< zero is a value that the eye must find
   bool needs_neighbours;    ///< there must be two vesicles
   FieldFunction function;
+  double automatic_end = std::numeric_limits<double>::infinity();  ///< of a range that is not given, in the unit above
 };
 const std::vector<FieldRow>& field_catalogue();
 /// Throws std::invalid_argument that names the nearest known field.

@@ -1,0 +1,47 @@
+// The range of a field that was not given follows the values of the whole movie.
+#include "app/fields.h"
+#include "app/scene_file.h"
+
+#include "sim/simulate.h"
+#include "tests/support/temporary_folder.h"
+
+#include <catch2/catch.hpp>
+
+#include <string>
+
+namespace {
+
+/// Two spheres in shear, their surfaces `gap` apart.
+render::Legend legend_of(const std::string& field, double gap, const std::string& view = "") {
+  const support::TemporaryFolder folder;
+  const std::string text = R"([flow]
+kind = "shear"
+[time]
+end = 0.1
+step = 0.1
+[[vesicle]]
+shape = "sphere"
+order = 4
+[[vesicle]]
+shape = "sphere"
+order = 4
+center = [)" + std::to_string(2 + gap) + ", 0, 0]\n[view]\nstyle = \"field\"\nfield = \"" + field + "\"\n" + view;
+  const app::Settings settings = app::parse_scene(text, "s.toml", ".");
+  const std::string file = (folder / "t.h5").string();
+  sim::SimulationOptions options;
+  options.trajectory = file;
+  sim::simulate(settings.scene, options, {});
+  return app::plan_painting(sim::TrajectoryReader(file), {0}, settings, 1).legend.value();
+}
+
+}  // namespace
+
+TEST_CASE("the distance to the neighbour is told apart up to three radii, and farther only where nothing is nearer") {
+  const render::Legend near = legend_of("neighbour-distance", 1);  // 1 to 3 of 5 radii
+  CHECK(near.low <= 1);
+  CHECK(near.high == 3);
+  const render::Legend far = legend_of("neighbour-distance", 8);
+  CHECK(far.low <= 8);
+  CHECK(far.high >= 9);
+  CHECK(legend_of("neighbour-distance", 1, "field_range = [0, 5]\n").high == 5);
+}
