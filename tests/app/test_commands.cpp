@@ -213,7 +213,7 @@ TEST_CASE("Ctrl-C finishes the step, saves, and ends with status 130", "[command
   const Desk desk(lengthened("10000"));
   const std::string file = desk.file("t.h5");
   const pid_t child = support::start(desk, {TANKTREAD_PROGRAM, "simulate", desk.file("s.toml"), "-o", file});
-  while (!fs::exists(file)) usleep(10000);
+  REQUIRE(support::wait_for(file));
   usleep(200000);
   kill(child, SIGINT);
   const Outcome outcome = support::finish(desk, child);

@@ -22,10 +22,6 @@ bool may_mount(const Desk& desk) {
   return may;
 }
 
-void wait_for(const fs::path& path) {
-  for (int k = 0; k < 1000 && !fs::exists(path); ++k) usleep(10000);
-}
-
 }  // namespace
 
 TEST_CASE("a disk that fills up in the middle of a simulation costs no state, and the run goes on afterwards", "[faults]") {
@@ -183,7 +179,7 @@ TEST_CASE("a second process that would write into the same folder or file refuse
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("short.h5"), "--steps", "3", "-q"}).status == 0);
   const Desk other;  // the first one's words go elsewhere
   const pid_t first = support::start(other, {TANKTREAD_PROGRAM, "run", desk.file("s.toml"), "-o", desk.file("out"), "-q"});
-  wait_for(desk / "out/trajectory.h5");
+  REQUIRE(support::wait_for(desk / "out/trajectory.h5"));
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"run", desk.file("s.toml"), "-o", desk.file("out")},
         {"run", desk.file("s.toml"), "-o", desk.file("out"), "--force"},
@@ -214,7 +210,7 @@ TEST_CASE("clocks that jump change neither the trajectory nor the frames", "[fau
 TEST_CASE("Ctrl-C twice ends at once and loses no state", "[faults]") {
   const Desk desk(scene("100000", ""));
   const pid_t child = support::start(desk, {TANKTREAD_PROGRAM, "simulate", desk.file("s.toml"), "-o", desk.file("t.h5")});
-  wait_for(desk / "t.h5");
+  REQUIRE(support::wait_for(desk / "t.h5"));
   usleep(100000);
   kill(child, SIGINT);
   kill(child, SIGINT);

@@ -45,6 +45,12 @@ inline Outcome finish(const TemporaryFolder& folder, pid_t child) {
           read_file(folder / "err.txt")};
 }
 
+/// Until the file is there, at most 10 s: a program that died makes none.
+inline bool wait_for(const std::filesystem::path& file) {
+  for (int k = 0; k < 1000 && !std::filesystem::exists(file); ++k) usleep(10000);
+  return std::filesystem::exists(file);
+}
+
 inline Outcome run(const TemporaryFolder& folder, std::vector<std::string> words) {
   return finish(folder, start(folder, std::move(words)));
 }
