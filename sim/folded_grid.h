@@ -32,16 +32,4 @@ struct FoldedGrid {
   int mirror(int i) const { return nlat - 1 - i; }
 };
 
-/// Row of (parity, block, m) among the intermediate spectra: latitude parity is the outermost index.
-struct SpectrumRows {
-  std::array<int, 4> first{};
-  int count = 0;
-  explicit SpectrumRows(const FoldedGrid& g) {
-    for (int b = 0; b < 4; ++b) {
-      first[b] = count;
-      count += int(g.blocks[b].m.size());
-    }
-  }
-};
-
 }  // namespace sim

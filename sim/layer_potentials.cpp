@@ -1,12 +1,10 @@
 #include "layer_potentials.h"
 
-#include "folded_grid.h"
-#include "small_product.h"
+#include "folded_analysis.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <stdexcept>
 
@@ -15,19 +13,8 @@ namespace sim {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr int components = 12;  ///< six of S, six of D
 
 int round_up(int n, int step) { return (n + step - 1) / step * step; }
-
-/// Uninitialised aligned scratch of SIMD vectors.
-struct LaneBuffer {
-  explicit LaneBuffer(std::size_t n) : data(new (std::align_val_t(64)) Lane[n]) {}
-  struct Free {
-    void operator()(Lane* p) const { ::operator delete[](p, std::align_val_t(64)); }
-  };
-  std::unique_ptr<Lane[], Free> data;
-  Lane* get() const { return data.get(); }
-};
 
 }  // namespace
 
@@ -46,9 +33,6 @@ struct LayerPotentials::Plan {
   void rows_of_tile(int latitude, int tile, const Coefficients& x, bool with_double, double* rows) const;
   LayerMatrices project(const std::vector<double>& rows, bool with_double) const;
   int column_stride() const { return round_up(coefficient_count(p), lanes); }
-  void analyse(const FoldedGrid& g, const SpectrumRows& r, const Lane* folded, Lane* spectrum, int latitude,
-               int width) const;
-  void legendre(const FoldedGrid& g, const SpectrumRows& r, const Lane* spectrum, Lane* out, int width) const;
 };
 
 LayerPotentials::Plan::Plan(int order, int source_order)
@@ -72,13 +56,8 @@ LayerPotentials::Plan::Plan(int order, int source_order)
   }
   // W_i: the basis at points turned by Ry(theta_i), projected on a p-grid, where the product is integrated exactly.
   const Basis basis(p, p);
-  Matrix direction(basis.points(), 3), turned(basis.points(), 3);
-  for (int j = 0; j < basis.longitudes(); ++j)
-    for (int k = 0; k < basis.latitudes(); ++k) {
-      const double st = std::sin(basis.theta()[k]);
-      direction.row(k + basis.latitudes() * j) << st * std::cos(basis.phi()[j]), st * std::sin(basis.phi()[j]),
-          std::cos(basis.theta()[k]);
-    }
+  const Matrix direction = grid_directions(basis);
+  Matrix turned(basis.points(), 3);
   const Matrix projection = basis_functions(p, direction).transpose() * basis.weights().asDiagonal();
   for (int i = 0; i <= q; ++i) {
     const double c = std::cos(target.theta[i]), sn = std::sin(target.theta[i]);
@@ -103,64 +82,7 @@ LayerPotentials::Plan::Plan(int order, int source_order)
   }
 }
 
-/// Fourier half of an analysis: folded samples [latitude parity][block][orbit][12] -> spectrum rows at one latitude.
-/// spectrum: [latitude parity][block, m][half][12].
-void LayerPotentials::Plan::analyse(const FoldedGrid& g, const SpectrumRows& r, const Lane* folded, Lane* spectrum,
-                                    int latitude, int width) const {
-  const int orbits = int(g.orbits.size());
-  std::array<int, 130> rows{};
-  for (int parity = 0; parity < 2; ++parity)
-    for (int b = 0; b < 4; ++b) {
-      const int count = int(g.blocks[b].m.size());
-      if (count == 0) continue;
-      for (int k = 0; k < count; ++k)
-        rows[k] = (((parity * r.count) + r.first[b] + k) * g.half + latitude) * components;
-      const SmallProduct product{count, orbits, g.blocks[b].table.data(), orbits, identity12.data(), rows.data()};
-      multiply(product, width, folded + std::ptrdiff_t(parity * 4 + b) * orbits * components, spectrum);
-    }
-}
-
-/// Legendre half of an analysis: spectrum as above -> coefficients [nm][12].
-void LayerPotentials::Plan::legendre(const FoldedGrid& g, const SpectrumRows& r, const Lane* spectrum, Lane* out,
-                                     int width) const {
-  std::array<int, 130> rows{};
-  for (int b = 0; b < 4; ++b)
-    for (std::size_t k = 0; k < g.blocks[b].m.size(); ++k)
-      for (int parity = 0; parity < 2; ++parity) {
-        const int m = g.blocks[b].m[k], sign = b < 2 ? 1 : -1, count = (p - m - parity + 2) / 2;
-        if (count <= 0) continue;
-        for (int c = 0; c < count; ++c) rows[c] = coefficient_index(m + parity + 2 * c, sign * m) * components;
-        const SmallProduct product{count, g.half, g.legendre[parity][m].data(), g.half, identity12.data(), rows.data()};
-        multiply(product, width,
-                 spectrum + std::ptrdiff_t((parity * r.count) + r.first[b] + int(k)) * g.half * components, out);
-      }
-}
-
 namespace {
-
-/// Adds 12 components of one sample to the eight folded sums it belongs to. Latitude parity: even sum and odd difference;
-/// orbit member 0: f, 1: -f, 2: pi - f, 3: pi + f; blocks cos even, cos odd, sin even, sin odd.
-constexpr double fold_sign[4][4] = {{1, 1, 1, 1}, {1, 1, -1, -1}, {1, -1, -1, 1}, {1, -1, 1, -1}};
-
-/// samples: [2 latitudes][4 members][12], zero where there is none; folded: [parity][block] strided by `stride`.
-void fold(const Lane* samples, Lane* folded, std::ptrdiff_t stride, int width) {
-  for (int c = 0; c < width; ++c) {
-    Lane sum[2][4];
-    for (int lat = 0; lat < 2; ++lat) {
-      const Lane* v = samples + (lat * 4) * components + c;
-      const Lane a = v[0] + v[components], d = v[0] - v[components];
-      const Lane e = v[2 * components] + v[3 * components], g = v[2 * components] - v[3 * components];
-      sum[lat][0] = a + e;  // cos even
-      sum[lat][1] = a - e;  // cos odd
-      sum[lat][2] = d - g;  // sin even: f, -(-f), -(pi-f), +(pi+f)
-      sum[lat][3] = d + g;  // sin odd:  f, -(-f), +(pi-f), -(pi+f)
-    }
-    for (int b = 0; b < 4; ++b) {
-      folded[b * stride + c] = sum[0][b] + sum[1][b];
-      folded[(4 + b) * stride + c] = sum[0][b] - sum[1][b];
-    }
-  }
-}
 
 struct SourcePoint {
   Lane x[3], n[3], area;  ///< position, area-weighted normal x_t x x_f, its length
@@ -324,10 +246,10 @@ void LayerPotentials::Plan::rows_of_tile(int latitude, int tile, const Coefficie
         }
       fold(samples.data(), folded.get() + l * components, std::ptrdiff_t(orbits) * components, used);
     }
-    analyse(source, source_rows, folded.get(), spectrum.get(), i, used);
+    fourier_analysis(source, source_rows, folded.get(), spectrum.get(), i, used);
   }
   LaneBuffer in_pole_frame(std::size_t(components) * nc), back(std::size_t(components) * nc);
-  legendre(source, source_rows, spectrum.get(), in_pole_frame.get(), used);
+  legendre_analysis(source, source_rows, spectrum.get(), in_pole_frame.get(), used);
 
   // Back to the original frame: W^T, then the z-rotation.
   for (int m = 0; m < 130; ++m) down[m] = -components * m;
@@ -403,9 +325,9 @@ LayerMatrices LayerPotentials::Plan::project(const std::vector<double>& rows, bo
             }
           fold(samples.data(), folded.get() + l * components, std::ptrdiff_t(orbits) * components, components);
         }
-        analyse(target, target_rows, folded.get(), spectrum.get(), i, components);
+        fourier_analysis(target, target_rows, folded.get(), spectrum.get(), i, components);
       }
-      legendre(target, target_rows, spectrum.get(), out.get(), components);
+      legendre_analysis(target, target_rows, spectrum.get(), out.get(), components);
       for (int row = 0; row < nc; ++row)
         for (int c = 0; c < width; ++c) {
           const int column = (first + c) * lanes;
