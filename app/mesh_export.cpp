@@ -35,10 +35,8 @@ class Sampler {
     directions_.resize(plan_.vertices(), 3);
     Eigen::Index row = 0;
     for (int j = 0; j < plan_.longitudes(); ++j)
-      for (int i = 1; i < plan_.latitudes(); ++i, ++row) {
-        const double t = plan_.theta()[i], f = plan_.phi()[j];
-        directions_.row(row) << std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t);
-      }
+      for (int i = 1; i < plan_.latitudes(); ++i, ++row)
+        directions_.row(row) = sim::unit_vector(plan_.theta()[i], plan_.phi()[j]).transpose();
     directions_.row(row++) << 0, 0, 1;
     directions_.row(row) << 0, 0, -1;
   }

@@ -1,6 +1,6 @@
 // Tables 4 and 5 and Figure 5: how far the time stepping schemes carry, and what they cost.
 #include "reproduce_items.h"
-#include "render/plot.h"
+#include "render/plot_marks.h"
 
 #include "sim/shapes.h"
 #include "sim/stepper.h"
@@ -304,7 +304,7 @@ Report reproduce_cost(const Effort& effort) {
           const std::vector<int> rates{v.upsampling};
           const std::vector<sim::Coefficients> tensions{v.motion.tension};
           const sim::Suspension s = sim::freeze_suspension(plans, setting.materials, x, rates, {}, tensions);
-          const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero(), x);
+          const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero());
           const sim::Motion zero{{p, sim::Matrix::Zero(sim::coefficient_count(p), 3)},
                                  {p, sim::Matrix::Zero(sim::coefficient_count(p), 1)}};
           const std::vector<sim::Motion> from_zero{zero}, from_last{before};
@@ -355,7 +355,7 @@ Report reproduce_cost(const Effort& effort) {
     const std::vector<sim::Coefficients> x{d.vesicles[0].position, d.vesicles[1].position};
     const std::vector<int> rates{d.vesicles[0].upsampling, d.vesicles[1].upsampling};
     const sim::Suspension s = sim::freeze_suspension(plans, setting.materials, x, rates, {});
-    const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero(), x);
+    const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero());
     const std::vector<sim::Motion> zero{d.vesicles[0].motion, d.vesicles[1].motion};
     pair.rows.push_back({fmt::format("{}", distance),
                          std::to_string(sim::solve_suspension(s, paper_step, r, zero, 1e-8, sim::Preconditioner::spectral).iterations),

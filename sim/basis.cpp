@@ -249,6 +249,24 @@ SecondDerivatives Basis::curvatures(const Coefficients& c) const {
 Coefficients Basis::analyze(const GridValues& g) const { return plan_->analyze(g.values); }
 Coefficients Basis::analyze(const Matrix& samples) const { return plan_->analyze(samples); }
 
+Vec3 unit_vector(double theta, double phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+Matrix grid_directions(const Basis& basis) {
+  Matrix s(basis.points(), 3);
+  for (int j = 0; j < basis.longitudes(); ++j)
+    for (int i = 0; i < basis.latitudes(); ++i)
+      s.row(i + basis.latitudes() * j) = unit_vector(basis.theta()[i], basis.phi()[j]).transpose();
+  return s;
+}
+
+SphereFrame sphere_frame(const Vec3& s) {
+  const double rho = std::max(std::hypot(s[0], s[1]), 1e-150);
+  const double c = s[0] / rho, d = s[1] / rho;
+  return {Vec3(s[2] * c, s[2] * d, -rho), Vec3(-d, c, 0), rho};
+}
+
 Coefficients resized(const Coefficients& c, int order) {
   Coefficients r{order, Matrix::Zero(coefficient_count(order), c.values.cols())};
   const int rows = coefficient_count(std::min(order, c.order));
@@ -287,18 +305,18 @@ FirstDerivatives sample_grid(const Coefficients& c, const Vector& theta, const V
 namespace {
 
 struct BasisFunctions {
-  Matrix value, t, f;  ///< count x (p+1)^2
+  Matrix value, t, f, tt, tf, ff;  ///< count x (p+1)^2
 };
 
-BasisFunctions basis_functions(int p, const Matrix& directions, bool derivatives) {
+BasisFunctions basis_functions(int p, const Matrix& directions, int derivatives) {
   const Eigen::Index count = directions.rows();
   Vector theta(count);
   for (Eigen::Index k = 0; k < count; ++k)
     theta[k] = std::atan2(std::hypot(directions(k, 0), directions(k, 1)), directions(k, 2));
-  const LegendreTable table = legendre_table(p, theta, derivatives ? 1 : 0);
+  const LegendreTable table = legendre_table(p, theta, derivatives);
   BasisFunctions b;
-  for (Matrix* m : {&b.value, &b.t, &b.f})
-    if (m == &b.value || derivatives) m->resize(count, coefficient_count(p));
+  Matrix* const all[] = {&b.value, &b.t, &b.f, &b.tt, &b.tf, &b.ff};
+  for (int k = 0; k < (derivatives + 1) * (derivatives + 2) / 2; ++k) all[k]->resize(count, coefficient_count(p));
   Eigen::ArrayXd phi(count);
   for (Eigen::Index k = 0; k < count; ++k) phi[k] = std::atan2(directions(k, 1), directions(k, 0));
   for (int m = 0; m <= p; ++m) {
@@ -308,13 +326,21 @@ BasisFunctions basis_functions(int p, const Matrix& directions, bool derivatives
       const auto value = table.value.col(column).array();
       b.value.col(c) = co * value;
       if (m > 0) b.value.col(s) = si * value;
-      if (!derivatives) continue;
+      if (derivatives < 1) continue;
       const auto slope = table.d1.col(column).array();
       b.t.col(c) = co * slope;
       b.f.col(c) = -m * si * value;
+      if (m > 0) b.t.col(s) = si * slope;
+      if (m > 0) b.f.col(s) = m * co * value;
+      if (derivatives < 2) continue;
+      const auto curvature = table.d2.col(column).array();
+      b.tt.col(c) = co * curvature;
+      b.tf.col(c) = -m * si * slope;
+      b.ff.col(c) = -m * m * co * value;
       if (m == 0) continue;
-      b.t.col(s) = si * slope;
-      b.f.col(s) = m * co * value;
+      b.tt.col(s) = si * curvature;
+      b.tf.col(s) = m * co * slope;
+      b.ff.col(s) = -m * m * si * value;
     }
   }
   return b;
@@ -324,17 +350,34 @@ constexpr Eigen::Index point_batch = 256;  ///< keeps the tables of a batch in c
 
 }  // namespace
 
-Matrix basis_functions(int p, const Matrix& directions) { return basis_functions(p, directions, false).value; }
+Matrix basis_functions(int p, const Matrix& directions) { return basis_functions(p, directions, 0).value; }
 
 FirstDerivatives sample_points_first(const Coefficients& c, const Matrix& directions) {
   const Eigen::Index count = directions.rows(), fields = c.values.cols();
   FirstDerivatives d{Matrix(count, fields), Matrix(count, fields), Matrix(count, fields)};
   for (Eigen::Index start = 0; start < count; start += point_batch) {
     const Eigen::Index size = std::min(point_batch, count - start);
-    const BasisFunctions b = basis_functions(c.order, directions.middleRows(start, size), true);
+    const BasisFunctions b = basis_functions(c.order, directions.middleRows(start, size), 1);
     d.value.middleRows(start, size).noalias() = b.value * c.values;
     d.t.middleRows(start, size).noalias() = b.t * c.values;
     d.f.middleRows(start, size).noalias() = b.f * c.values;
+  }
+  return d;
+}
+
+SecondDerivatives sample_points_second(const Coefficients& c, const Matrix& directions) {
+  const Eigen::Index count = directions.rows(), fields = c.values.cols();
+  SecondDerivatives d;
+  for (Matrix* m : {&d.value, &d.t, &d.f, &d.tt, &d.tf, &d.ff}) m->resize(count, fields);
+  for (Eigen::Index start = 0; start < count; start += point_batch) {
+    const Eigen::Index size = std::min(point_batch, count - start);
+    const BasisFunctions b = basis_functions(c.order, directions.middleRows(start, size), 2);
+    d.value.middleRows(start, size).noalias() = b.value * c.values;
+    d.t.middleRows(start, size).noalias() = b.t * c.values;
+    d.f.middleRows(start, size).noalias() = b.f * c.values;
+    d.tt.middleRows(start, size).noalias() = b.tt * c.values;
+    d.tf.middleRows(start, size).noalias() = b.tf * c.values;
+    d.ff.middleRows(start, size).noalias() = b.ff * c.values;
   }
   return d;
 }

@@ -49,6 +49,18 @@ class Basis {
   std::unique_ptr<Plan> plan_;
 };
 
+/// The point of the unit sphere at colatitude theta and longitude phi.
+Vec3 unit_vector(double theta, double phi);
+/// ... of every grid point, as rows.
+Matrix grid_directions(const Basis&);
+
+/// Orthonormal tangents of the unit sphere at s, in the directions of growing theta and phi.
+struct SphereFrame {
+  Vec3 e_theta, e_phi;
+  double sin_theta;  ///< at least 1e-150, so that a pole has a frame too
+};
+SphereFrame sphere_frame(const Vec3& s);
+
 /// Zero-padded or truncated to degree p.
 Coefficients resized(const Coefficients&, int order);
 
@@ -62,5 +74,6 @@ Matrix basis_functions(int p, const Matrix& directions);
 Matrix sample_points(const Coefficients&, const Matrix& directions);
 /// Value and derivatives in theta and phi at arbitrary points (not at the poles themselves).
 FirstDerivatives sample_points_first(const Coefficients&, const Matrix& directions);
+SecondDerivatives sample_points_second(const Coefficients&, const Matrix& directions);
 
 }  // namespace sim

@@ -62,8 +62,7 @@ Net net_of(const Coefficients& position) {
   for (Eigen::Index k = 0; k < x.value.rows(); ++k) {
     const Vec3 t = x.t.row(k), f = x.f.row(k);
     net.normals.row(k) = t.cross(f).normalized().transpose();
-    const double a = theta[k % latitudes], b = phi[k / latitudes];
-    net.parameters.row(k) << std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a);
+    net.parameters.row(k) = unit_vector(theta[k % latitudes], phi[k / latitudes]).transpose();
   }
   net.centre = net.points.colwise().mean().transpose();
   net.reach = (net.points.rowwise() - net.centre.transpose()).rowwise().norm().maxCoeff();
@@ -115,7 +114,7 @@ const std::vector<FieldRow>& field_catalogue() {
       {"membrane-speed", "speed along the membrane, relative to the vesicle: tank-treading", "|u_{s}|",
        FieldScale::velocity, false, false, membrane_speed},
       {"neighbour-distance", "distance to the nearest point of any other vesicle", "h", FieldScale::length, false, true,
-       neighbour_distance},
+       neighbour_distance, 3},  // farther away a neighbour is hardly felt, and the map is for the near ones
   };
   return rows;
 }

@@ -40,8 +40,7 @@ Sources make_sources(const Basis& basis, const Coefficients& x) {
 }
 
 Vec3 direction(const Basis& basis, Eigen::Index k) {
-  const double t = basis.theta()[k % basis.latitudes()], f = basis.phi()[k / basis.latitudes()];
-  return {std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)};
+  return unit_vector(basis.theta()[k % basis.latitudes()], basis.phi()[k / basis.latitudes()]);
 }
 
 double distance_to_box(const Vec3& x, const Vec3& low, const Vec3& high) {
@@ -309,7 +308,9 @@ Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
             positions[i], positions[j], {direction(*bases[i], at_a), direction(*bases[j], at_b), nearest});
         const Vec3 x = sample_points(positions[i], approach.s.transpose()).row(0).transpose();
         gap.distance = approach.distance;
-        gap.crossing = nearest_point(positions[j], x, approach.t).inside;
+        // Where they cross, the least distance is zero up to rounding and has no side.
+        constexpr double touching = 1e-5;  // of the spacing: what the search for a zero distance leaves
+        gap.crossing = gap.distance < touching * b.spacing[at_b] || nearest_point(positions[j], x, approach.t).inside;
       }
       if (!gap.crossing && apart.isZero(0))  // boxes overlap: one may hold the other, or they may cross by far
         gap.crossing = winding(b, a.points.row(0).transpose()) > 0.5 || winding(a, b.points.row(0).transpose()) > 0.5;

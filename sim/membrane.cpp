@@ -74,11 +74,11 @@ Coefficients implicit_force(const Membrane& m, double c, const Motion& y) {
   return m.bases.field.analyze(force);
 }
 
-Coefficients known_force(const Membrane& m, const Vec3& gravity, const Coefficients& history) {
+Coefficients known_force(const Membrane& m, const Vec3& gravity, const Coefficients& displacement) {
   Matrix force = bending_force(m.bases, m.geometry, m.material.bending_modulus);
-  const Matrix displacement = m.bases.field.synthesize(history).values - m.geometry.x.value;
-  if (!displacement.isZero(0)) {
-    const Vector bent = curvature_change(m.ripples, m.geometry, m.curvature_gradient, displacement);
+  if (displacement.values.size() > 0) {
+    const Matrix moved = m.bases.field.synthesize(displacement).values;
+    const Vector bent = curvature_change(m.ripples, m.geometry, m.curvature_gradient, moved);
     force += along_normal(m.geometry, displacement_magnitude(m, bent));
   }
   if (m.material.density_difference != 0) force += buoyancy_force(m, gravity);
@@ -153,9 +153,9 @@ Vector precondition(const Membrane& m, const SpectralInverse& inverse, const Vec
 }
 
 Coefficients forcing(const Membrane& m, std::span<const FlowParameters> flows, double time, const Vec3& gravity,
-                     const Coefficients& history) {
+                     const Coefficients& displacement) {
   Coefficients r = m.bases.field.analyze(background_velocity(flows, time, m.geometry.x.value));
-  r.values += m.layers.single.apply(known_force(m, gravity, history)).values;
+  r.values += m.layers.single.apply(known_force(m, gravity, displacement)).values;
   return r;
 }
 

@@ -61,9 +61,9 @@ Coefficients divergence(const Membrane&, const Coefficients& velocity);
 Matrix buoyancy_force(const Membrane&, const Vec3& gravity);
 
 /// Forces as coefficients of degree p: the part linear in u and sigma of f_b(h + c u) + f_sigma(sigma), and the rest of it,
-/// with buoyancy.
+/// with buoyancy. `displacement`: h less the frozen position; empty where they are the same.
 Coefficients implicit_force(const Membrane&, double c, const Motion&);
-Coefficients known_force(const Membrane&, const Vec3& gravity, const Coefficients& history);
+Coefficients known_force(const Membrane&, const Vec3& gravity, const Coefficients& displacement = {});
 
 /// (1 - lambda) D u + S f.
 Coefficients layer_velocity(const Membrane&, const Coefficients& force, const Coefficients& velocity);
@@ -89,9 +89,9 @@ Coefficients precondition_tension(const SpectralInverse&, const Coefficients& si
 Vector precondition(const Membrane&, const SpectralInverse&, const Vector&);
 
 /// Right-hand side r of (39a) as velocity coefficients: background flow at time t at the frozen positions, the bending
-/// force of the history h, and buoyancy.
+/// force of the history h (see known_force), and buoyancy.
 Coefficients forcing(const Membrane&, std::span<const FlowParameters>, double time, const Vec3& gravity,
-                     const Coefficients& history);
+                     const Coefficients& displacement = {});
 
 struct Solve {
   Motion motion;

@@ -12,45 +12,46 @@ constexpr double pi = std::numbers::pi;
 }  // namespace
 
 NearestPoint nearest_point(const Coefficients& x, const Vec3& target, const Vec3& start) {
-  // Gauss-Newton on |x(s) - target|^2 in the tangent plane of s: the metric is positive, so that every step descends; one
-  // that does not come nearer is halved.
+  // Newton on |x(s) - target|^2 / 2 along great circles through s; a step that does not come nearer is halved.
   Vec3 s = start.normalized();
-  NearestPoint best;
-  const auto at = [&](const Vec3& d) { return sample_points_first(x, d.transpose()); };
-  FirstDerivatives y = at(s);
-  double distance = (y.value.row(0).transpose() - target).norm();
+  SecondDerivatives y = sample_points_second(x, s.transpose());
+  const auto distance_of = [&](const SecondDerivatives& at) { return (at.value.row(0).transpose() - target).norm(); };
+  double distance = distance_of(y);
   Vec3 normal = Vec3::UnitZ();
   for (int iteration = 0; iteration < 50; ++iteration) {
-    const double rho = std::max(std::hypot(s[0], s[1]), 1e-12);
-    const Vec3 e_t(s[2] * s[0] / rho, s[2] * s[1] / rho, -rho), e_f(-s[1] / rho, s[0] / rho, 0);
-    const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose() / rho;
+    const auto [e_t, e_f, rho] = sphere_frame(s);
+    const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose() / rho, miss = target - y.value.row(0).transpose();
     normal = a.cross(b).normalized();
-    const Vec3 miss = target - y.value.row(0).transpose();
     const Eigen::Vector2d slope(a.dot(miss), b.dot(miss));
-    Eigen::Matrix2d metric;
+    Eigen::Matrix2d metric, curved;
     metric << a.dot(a), a.dot(b), a.dot(b), b.dot(b);
-    const Eigen::Vector2d newton = metric.ldlt().solve(slope);
-    if (newton.norm() < 1e-14) break;
-    double length = 1;
+    // The second derivative along the sphere; at a pole 1/rho^2 amplifies rounding, and the metric alone must do.
+    const Vec3 x_tf = (y.tf.row(0).transpose() - s[2] * b) / rho;
+    const Vec3 x_ff = (y.ff.row(0).transpose() / rho + s[2] * a) / rho;
+    curved << a.dot(a) - y.tt.row(0).dot(miss), a.dot(b) - x_tf.dot(miss), 0, b.dot(b) - x_ff.dot(miss);
+    curved(1, 0) = curved(0, 1);
+    // Where the target lies beyond a centre of curvature the least distance is elsewhere: the metric always descends.
+    const bool newton = rho > 1e-4 && curved(0, 0) > 0 && curved.determinant() > 0.01 * metric.determinant();
+    const Eigen::Vector2d step = (newton ? curved : metric).ldlt().solve(slope);
+    if (step.norm() < 1e-14) break;
+    const bool last = newton && step.norm() < 1e-7;  // its square is below rounding; the distance no longer tells
+    double length = std::min(1.0, 0.5 / step.norm());
     bool nearer = false;
     for (int half = 0; half < 30 && !nearer; ++half, length /= 2) {
-      const Vec3 trial = (s + length * (newton[0] * e_t + newton[1] * e_f)).normalized();
-      const FirstDerivatives z = at(trial);
-      const double d = (z.value.row(0).transpose() - target).norm();
-      if (d < distance) {
+      const Vec3 trial = (s + length * (step[0] * e_t + step[1] * e_f)).normalized();
+      SecondDerivatives z = sample_points_second(x, trial.transpose());
+      const double d = distance_of(z);
+      if (d < distance || last) {
         s = trial;
-        y = z;
+        y = std::move(z);
         nearer = true;
         distance = d;
       }
     }
-    if (!nearer) break;
+    if (!nearer || last) break;
   }
-  best.parameter = s;
-  best.position = y.value.row(0).transpose();
-  best.distance = distance;
-  best.inside = normal.dot(target - best.position) < 0;
-  return best;
+  const Vec3 position = y.value.row(0).transpose();
+  return {s, position, distance, normal.dot(target - position) < 0};
 }
 
 PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,

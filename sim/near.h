@@ -22,7 +22,7 @@ struct NearestPoint {
   bool inside = false;             ///< the target lies on the inner side of the membrane
 };
 
-/// Gauss-Newton for the nearest point of x(s) to the target, started at the parameter `start`.
+/// Newton for the nearest point of x(s) to the target, started at the parameter `start`.
 NearestPoint nearest_point(const Coefficients& position, const Vec3& target, const Vec3& start);
 
 /// Rows of (4) with mu = 1 and of (5) without (1 - lambda) for one target: (p+1)^2 x 6 each, blocks xx, xy, xz, yy, yz, zz.

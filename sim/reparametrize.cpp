@@ -10,28 +10,6 @@ namespace sim {
 
 namespace {
 
-/// Directions of all grid points, as rows of unit vectors.
-Matrix grid_directions(const Basis& basis) {
-  Matrix s(basis.points(), 3);
-  for (int j = 0; j < basis.longitudes(); ++j)
-    for (int i = 0; i < basis.latitudes(); ++i) {
-      const double t = basis.theta()[i], f = basis.phi()[j];
-      s.row(i + basis.latitudes() * j) << std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t);
-    }
-  return s;
-}
-
-/// Orthonormal tangents of the sphere at s, in the directions of growing theta and phi.
-struct SphereFrame {
-  Vec3 e_theta, e_phi;
-  double sin_theta;
-};
-SphereFrame sphere_frame(const Vec3& s) {
-  const double rho = std::max(std::hypot(s[0], s[1]), 1e-150);
-  const double c = s[0] / rho, d = s[1] / rho;
-  return {Vec3(s[2] * c, s[2] * d, -rho), Vec3(-d, c, 0), rho};
-}
-
 /// Tangential step on the sphere that moves the surface point by the tangential part of `shift` (least squares).
 Vec3 parameter_shift(const SphereFrame& frame, const Vec3& x_t, const Vec3& x_f, const Vec3& shift) {
   const Vec3 a = x_t, b = x_f / frame.sin_theta;

@@ -34,12 +34,8 @@ void apply_blocks(Matrix& c, const std::vector<Matrix>& blocks, bool transposed)
 
 RotationPlan::RotationPlan(int order) : order_(order) {
   const Basis basis(order, order);
-  Matrix s(basis.points(), 3), turned(basis.points(), 3);
-  for (int j = 0; j < basis.longitudes(); ++j)
-    for (int i = 0; i < basis.latitudes(); ++i) {
-      const double t = basis.theta()[i], f = basis.phi()[j];
-      s.row(i + basis.latitudes() * j) << std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t);
-    }
+  const Matrix s = grid_directions(basis);
+  Matrix turned(basis.points(), 3);
   turned << s.col(0), -s.col(2), s.col(1);  // Rx(pi/2): y -> z, z -> -y
   const Matrix projection = basis_functions(order, s).transpose() * basis.weights().asDiagonal();
   const Matrix values = basis_functions(order, turned);

@@ -59,29 +59,31 @@ SuspensionSolve solve(const Setting& s, const Suspension& suspension, double c, 
   return result;
 }
 
-/// x+ = h + c u with everything frozen at `frozen` and the flow taken at `time`.
+/// x+ = h + c u with everything frozen at `frozen`, h = frozen + `behind` (none: zero), and the flow taken at `time`.
 Advance implicit_step(const Setting& s, const Dynamics& d, std::span<const Coefficients> frozen,
-                      std::span<const Coefficients> history, double c, double time, std::span<const Motion> guess) {
+                      std::span<const Coefficients> behind, double c, double time, std::span<const Motion> guess) {
   const Suspension suspension = freeze(s, d, frozen);
-  const auto r = suspension_forcing(suspension, s.scene.flows, time, s.scene.buoyancy.gravity, history);
+  const auto r = suspension_forcing(suspension, s.scene.flows, time, s.scene.buoyancy.gravity, behind);
   SuspensionSolve result = solve(s, suspension, c, r, guess);
   Advance a{{}, std::move(result.motions), result.iterations, result.residual};
-  for (std::size_t k = 0; k < history.size(); ++k)
-    a.positions.push_back({history[k].order, history[k].values + c * a.motions[k].velocity.values});
+  for (std::size_t k = 0; k < frozen.size(); ++k) {
+    a.positions.push_back({frozen[k].order, frozen[k].values + c * a.motions[k].velocity.values});
+    if (!behind.empty()) a.positions[k].values += behind[k].values;
+  }
   return a;
 }
 
 Advance globally_implicit(const Setting& s, const Dynamics& d, double dt) {
   const auto x = positions(d);
-  return implicit_step(s, d, x, x, dt, d.time + dt, motions(d));
+  return implicit_step(s, d, x, {}, dt, d.time + dt, motions(d));
 }
 
 /// One step of backward Euler extrapolated from two half ones: how BDF2 starts.
 Advance extrapolated_euler(const Setting& s, const Dynamics& d, double dt) {
   const auto x = positions(d);
-  const Advance whole = implicit_step(s, d, x, x, dt, d.time + dt, motions(d));
-  const Advance half = implicit_step(s, d, x, x, dt / 2, d.time + dt / 2, motions(d));
-  Advance last = implicit_step(s, d, half.positions, half.positions, dt / 2, d.time + dt, half.motions);
+  const Advance whole = implicit_step(s, d, x, {}, dt, d.time + dt, motions(d));
+  const Advance half = implicit_step(s, d, x, {}, dt / 2, d.time + dt / 2, motions(d));
+  Advance last = implicit_step(s, d, half.positions, {}, dt / 2, d.time + dt, half.motions);
   for (std::size_t k = 0; k < x.size(); ++k)
     last.positions[k].values = 2 * last.positions[k].values - whole.positions[k].values;
   last.iterations += whole.iterations + half.iterations;
@@ -92,12 +94,12 @@ Advance extrapolated_euler(const Setting& s, const Dynamics& d, double dt) {
 Advance bdf2(const Setting& s, const Dynamics& d, double dt) {
   if (!d.history) return extrapolated_euler(s, d, dt);
   const double r = dt / d.dt_before;
-  std::vector<Coefficients> frozen, history;
+  std::vector<Coefficients> frozen, behind;
   for (const VesicleDynamics& v : d.vesicles) {
     frozen.push_back({v.position.order, v.position.values + r * v.displacement.values});
-    history.push_back({v.position.order, v.position.values + r * r / (1 + 2 * r) * v.displacement.values});
+    behind.push_back({v.position.order, (r * r / (1 + 2 * r) - r) * v.displacement.values});
   }
-  return implicit_step(s, d, frozen, history, dt * (1 + r) / (1 + 2 * r), d.time + dt, motions(d));
+  return implicit_step(s, d, frozen, behind, dt * (1 + r) / (1 + 2 * r), d.time + dt, motions(d));
 }
 
 /// The three schemes that solve vesicle by vesicle: the bending and tension forces of the others are those of x_n, sigma_n.
@@ -105,7 +107,7 @@ Advance block_scheme(const Setting& s, const Dynamics& d, double dt,
                      Solve (*solve_self)(const Membrane&, double dt, const Coefficients& r, const Motion&, double)) {
   const auto x = positions(d);
   const Suspension suspension = freeze(s, d, x);
-  std::vector<Coefficients> r = suspension_forcing(suspension, s.scene.flows, d.time + dt, s.scene.buoyancy.gravity, x);
+  std::vector<Coefficients> r = suspension_forcing(suspension, s.scene.flows, d.time + dt, s.scene.buoyancy.gravity);
   if (x.size() > 1) {
     std::vector<Coefficients> tension;
     for (std::size_t k = 0; k < x.size(); ++k)
@@ -231,14 +233,15 @@ Dynamics initial_dynamics(const Setting& s) {
     const int label_order = s.scene.numerics.label_order;
     v.labels = fresh_labels(label_order > 0 ? label_order : std::max(2 * p, 24));
     v.tracers = tracer_directions();
-    const AreaVolume av = area_volume(s.plans.basis(p, measure_order(p)), v.position);
-    v.area = av.area;
-    v.volume = av.volume;
-    v.energy = energy_of(measured_geometry(s.plans, v.position));
+    const Geometry g = measured_geometry(s.plans, v.position);
+    const Measures measured = measures(g);
+    v.area = measured.area;
+    v.volume = measured.volume;
+    v.energy = measured.h_squared / four_pi;
     const NumericsParameters& n = s.scene.numerics;
     v.upsampling = n.upsampling > 0 ? n.upsampling : upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
     v.upsampling_due = 1;
-    v.tail = curvature_tail(s.plans.basis(p, measure_order(p)), measured_geometry(s.plans, v.position));
+    v.tail = curvature_tail(s.plans.basis(p, measure_order(p)), g);
     v.high_share = high_degree_share(v.position);
     d.vesicles.push_back(std::move(v));
   }
@@ -258,7 +261,7 @@ VesicleStep finish_vesicle(const Setting& s, VesicleDynamics& v, Coefficients po
   if (!position.values.allFinite()) throw StepFailure("a position is not finite");
   const int p = position.order;
   const Basis& measured = s.plans.basis(p, measure_order(p));
-  Geometry moved = geometry(measured, position);
+  const Geometry moved = geometry(measured, position);
   check_step(n, moved, n.correction ? v.area : area_volume(measured, v.position).area, v.energy);
   v.displacement.values = position.values - v.position.values;
   v.position = std::move(position);
@@ -326,7 +329,7 @@ Step take_step(const Setting& s, const Dynamics& before, double dt) {
 State evaluate(const Setting& s, const Dynamics& d) {
   const auto x = positions(d);
   const Suspension suspension = freeze(s, d, x);
-  const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity, x);
+  const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity);
   SuspensionSolve result = solve(s, suspension, 0, r, motions(d));
   State state{d.step, d.time, {}};
   for (std::size_t k = 0; k < d.vesicles.size(); ++k) {

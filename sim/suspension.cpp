@@ -34,12 +34,12 @@ std::vector<Coefficients> interaction_of(const Suspension& s, std::span<const Co
 }
 
 std::vector<Coefficients> suspension_forcing(const Suspension& s, std::span<const FlowParameters> flows, double time,
-                                             const Vec3& gravity, std::span<const Coefficients> histories) {
+                                             const Vec3& gravity, std::span<const Coefficients> displacements) {
   const int n = int(s.membranes.size());
   std::vector<Coefficients> forces(n), r(n);
   parallel_for(n, [&](int i) {
     const Membrane& m = s.membranes[i];
-    forces[i] = known_force(m, gravity, histories[i]);
+    forces[i] = displacements.empty() ? known_force(m, gravity) : known_force(m, gravity, displacements[i]);
     if (!s.repulsion.empty()) forces[i].values += s.repulsion[i].values;
     r[i] = m.bases.field.analyze(background_velocity(flows, time, m.geometry.x.value));
     r[i].values += m.layers.single.apply(forces[i]).values;

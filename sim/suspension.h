@@ -23,9 +23,9 @@ Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const 
                              std::span<const Coefficients> expected_tensions = {});
 
 /// r of (39a) for every vesicle: background flow, and the velocities that the bending of the histories, buoyancy and
-/// repulsion cause, one's own and the others'.
+/// repulsion cause, one's own and the others'. `displacements`: histories less frozen positions, none where they are the same.
 std::vector<Coefficients> suspension_forcing(const Suspension&, std::span<const FlowParameters>, double time,
-                                             const Vec3& gravity, std::span<const Coefficients> histories);
+                                             const Vec3& gravity, std::span<const Coefficients> displacements = {});
 
 /// Velocity that known forces (per vesicle, degree p) on all vesicles induce on the others: the lagged interaction of the
 /// block schemes.

@@ -30,16 +30,6 @@ FlowSource::Level level(Plans& plans, const FlowSource& source, int order) {
   return l;
 }
 
-/// Parameters of a grid's points, unit vectors.
-Matrix grid_directions(const Basis& basis) {
-  Matrix s(basis.points(), 3);
-  for (Eigen::Index k = 0; k < basis.points(); ++k) {
-    const double t = basis.theta()[k % basis.latitudes()], f = basis.phi()[k / basis.latitudes()];
-    s.row(k) << std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t);
-  }
-  return s;
-}
-
 /// Nearest source point and its distance.
 std::pair<Eigen::Index, double> nearest_source(const Sources& s, const Vec3& x) {
   Eigen::Index k = 0;
@@ -133,7 +123,7 @@ FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const
     source.position = v.position;
     source.velocity = v.velocity;
     source.viscosity_contrast = materials[i].viscosity_contrast;
-    source.densities.force = known_force(m, scene.buoyancy.gravity, v.position);
+    source.densities.force = known_force(m, scene.buoyancy.gravity);
     source.densities.force.values += implicit_force(m, 0, {v.velocity, v.tension}).values;
     if (!repelled.empty()) source.densities.force.values += repelled[i].values;
     source.densities.dual = {p, (1 - source.viscosity_contrast) * v.velocity.values};

@@ -14,8 +14,7 @@ Eigen::Matrix3d turned_metric(const Basis& basis, const Geometry& g) {
   for (int j = 0; j < basis.longitudes(); ++j)
     for (int i = 0; i < basis.latitudes(); ++i) {
       const int k = i + basis.latitudes() * j;
-      const double t = basis.theta()[i], f = basis.phi()[j], s = std::sin(t);
-      const Vec3 e_t(std::cos(t) * std::cos(f), std::cos(t) * std::sin(f), -s), e_f(-std::sin(f), std::cos(f), 0);
+      const auto [e_t, e_f, s] = sphere_frame(unit_vector(basis.theta()[i], basis.phi()[j]));
       mean += basis.weights()[k] / (4 * std::numbers::pi) *
               (g.lap_tt[k] * e_f * e_f.transpose() -
                0.5 * s * g.lap_tf[k] * (e_t * e_f.transpose() + e_f * e_t.transpose()) +

@@ -88,6 +88,10 @@ TEST_CASE("values at scattered points and on any lattice agree with the grid, po
   CHECK((points.value - grid.value).cwiseAbs().maxCoeff() < 1e-13);
   CHECK((points.t - grid.t).cwiseAbs().maxCoeff() < 1e-12);
   CHECK((points.f - grid.f).cwiseAbs().maxCoeff() < 1e-12);
+  const SecondDerivatives bent = sample_points_second(c, direction), exact = basis.second(c);
+  for (const auto& [own, grids] : {std::pair{&bent.value, &exact.value}, {&bent.t, &exact.t}, {&bent.f, &exact.f},
+                                   {&bent.tt, &exact.tt}, {&bent.tf, &exact.tf}, {&bent.ff, &exact.ff}})
+    CHECK((*own - *grids).cwiseAbs().maxCoeff() < 1e-11);
   for (int j = 1; j < basis.longitudes(); ++j)  // one value at each pole, whatever phi
     CHECK((lattice.value.row(theta.size() * j) - lattice.value.row(0)).norm() < 1e-14);
 }

@@ -71,6 +71,21 @@ TEST_CASE("the nearest point of an ellipsoid is found from outside and from insi
     }
 }
 
+TEST_CASE("the nearest point of a disc is the foot of the normal to rounding, from a start of a grid point's distance") {
+  const Coefficients x = test::surface("biconcave", 0.65, 8);
+  const Basis basis(8, 11);
+  const Geometry g = geometry(basis, x);
+  const Matrix s = grid_directions(basis);
+  for (const double gap : {-0.01, 1e-3, 0.3})
+    for (int k = 3; k < basis.points(); k += 7) {
+      const Vec3 foot = g.x.value.row(k).transpose(), start = s.row(k).transpose() + 0.07 * Vec3(0.6, -0.5, 0.6);
+      const NearestPoint nearest = nearest_point(x, foot + gap * g.n.row(k).transpose(), start);
+      CHECK(nearest.distance == Approx(std::abs(gap)).epsilon(1e-12));
+      CHECK((nearest.position - foot).norm() < 1e-9);  // a root of rounding errors where the distance is flat: 1e-8 of 1e-16
+      CHECK(nearest.inside == (gap < 0));
+    }
+}
+
 TEST_CASE("the near rule meets 1e-5 at a gap of 0.01 and 1e-4 at 0.001, on the prolate at 48 x 64") {
   const Coefficients x = test::surface("prolate", 0.85, 8);
   for (const auto& [gap, bound] : {std::pair{1e-1, 1e-8}, {1e-2, 1e-5}, {1e-3, 1e-4}}) {
@@ -223,6 +238,17 @@ TEST_CASE("gaps are measured between the surfaces, not between grid points") {
     const Gap g = smallest_gap(plans, std::vector{a, b});
     CHECK(g.distance == Approx(gap).epsilon(gap < 0.1 ? 1e-5 : 0.05));  // exact only near contact, where it matters
     CHECK_FALSE(g.crossing);
+  }
+}
+
+TEST_CASE("surfaces that touch or cross slightly are said to cross") {
+  Plans plans;
+  for (const double overlap : {1e-12, 1e-3, 0.02, 0.2}) {
+    VesicleParameters v = test::vesicle("prolate", 0.85, 8);
+    const Coefficients a = initial_position(v);
+    const Geometry g = geometry(plans.basis(8, 12), a);
+    v.center = {0, 0, 2 * g.x.value.col(2).maxCoeff() - overlap};
+    CHECK(smallest_gap(plans, std::vector{a, initial_position(v)}).crossing);
   }
 }
 

@@ -19,7 +19,7 @@ Instant instant(const Coefficients& x, const Material& material, std::vector<Flo
                 const Vec3& gravity = Vec3::Zero(), int source_order = 0) {
   Plans plans;
   const Membrane m = freeze_membrane(plans, material, x, 2, source_order);
-  const Solve s = solve_system(m, 0, forcing(m, flows, 0, gravity, x), test::at_rest(x.order), 1e-13);
+  const Solve s = solve_system(m, 0, forcing(m, flows, 0, gravity), test::at_rest(x.order), 1e-13);
   REQUIRE(s.converged);
   return {m.geometry, m.bases.field.synthesize(s.motion.velocity).values,
           m.bases.field.synthesize(s.motion.tension).values, s.iterations};
@@ -86,7 +86,7 @@ TEST_CASE("a drop without forces has the normal velocity 5/(2 lambda + 3) n.E.n"
   f.kind = "extension";
   for (const double lambda : {0.2, 3.0}) {
     const Membrane m = freeze_membrane(plans, {lambda, 0, 0}, x, 2, 0);
-    const Coefficients r = forcing(m, std::vector{f}, 0, Vec3::Zero(), x);
+    const Coefficients r = forcing(m, std::vector{f}, 0, Vec3::Zero());
     const auto row = [&](const Vector& y) {
       const Coefficients u{p, y.reshaped(coefficient_count(p), 3)};
       return Vector((m.material.alpha() * u.values - (1 - lambda) * m.layers.dual.apply(u).values).reshaped());
@@ -160,7 +160,7 @@ TEST_CASE("velocity and tension of the instantaneous problem have no divergence 
   const Coefficients x = test::potato(12);
   Plans plans;
   const Membrane m = freeze_membrane(plans, {3, 1, 0}, x, 3, 24);
-  const Solve s = solve_system(m, 0, forcing(m, {}, 0, Vec3::Zero(), x), test::at_rest(12), 1e-12);
+  const Solve s = solve_system(m, 0, forcing(m, {}, 0, Vec3::Zero()), test::at_rest(12), 1e-12);
   CHECK(divergence(m, s.motion.velocity).values.norm() < 1e-9 * s.motion.velocity.values.norm());
   const Matrix f = bending_force(m.bases, m.geometry, 1);
   CHECK(integrate(m.geometry, f.cwiseProduct(m.bases.field.synthesize(s.motion.velocity).values).rowwise().sum()) > 0);
@@ -256,7 +256,7 @@ TEST_CASE("GMRES takes at most 30 iterations whatever the order and the viscosit
       tension.values(0, 0) = 3 * std::sqrt(4 * test::pi);
       const Membrane m = freeze_membrane(plans, {lambda, 0.01, 0}, x, 3, 0, tension);
       const std::vector flows{test::shear()};
-      const Solve s = solve_system(m, 0.21, forcing(m, flows, 0, Vec3::Zero(), x), test::at_rest(p), 1e-8);
+      const Solve s = solve_system(m, 0.21, forcing(m, flows, 0, Vec3::Zero()), test::at_rest(p), 1e-8);
       CHECK(s.converged);
       CHECK(s.iterations <= 30);
     }
