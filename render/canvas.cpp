@@ -1,15 +1,12 @@
 #include "canvas.h"
 
+#include "file.h"
 #include "image.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
-#include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -71,20 +68,6 @@ std::string renumbered(const std::string& svg) {
 
 }  // namespace
 
-void write_text(const std::filesystem::path& path, std::string_view text) {
-  std::filesystem::path temporary = path;
-  temporary.replace_filename(fmt::format(".{}.{}.tmp", path.filename().string(), ::getpid()));
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
-  int error = file ? 0 : errno;
-  if (file) {
-    if (std::fwrite(text.data(), 1, text.size(), file) != text.size()) error = errno;
-    if (std::fclose(file) != 0 && !error) error = errno;
-    if (!error && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
-    if (error) std::remove(temporary.c_str());
-  }
-  if (error) throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(error));
-}
-
 void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing) {
   const double scale = drawing.dots_per_inch / 72;
   const int width = static_cast<int>(std::lround(drawing.width * scale));
@@ -117,7 +100,7 @@ void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()), path);
   }
-  write_text(path, renumbered(text));
+  write_file(path, renumbered(text));
 }
 
 void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing) {
@@ -131,7 +114,7 @@ void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()), path);
   }
-  write_text(path, text);
+  write_file(path, text);
 }
 
 }  // namespace render

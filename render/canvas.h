@@ -18,13 +18,10 @@ struct Drawing {
   double dots_per_inch = 200;  ///< of the PNG
 };
 
-/// Each is written under a temporary name and renamed; throws std::runtime_error with path and reason.
+/// Each is written by write_file(); throws std::runtime_error with path and reason.
 /// The same drawing gives the same bytes: no dates, no names of machines, text as paths.
 void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing);
 void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing);
 void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing);
-
-/// Writes text to a temporary file beside path and renames it.
-void write_text(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace render

@@ -1,6 +1,7 @@
 #include "figure.h"
 
 #include "figure_kinds.h"
+#include "file.h"
 
 #include <fmt/format.h>
 
@@ -129,7 +130,7 @@ std::vector<std::filesystem::path> write_figure(const Figure& figure, const std:
   write_drawing_png(paths[0], figure.drawing);
   write_drawing_svg(paths[1], figure.drawing);
   write_drawing_pdf(paths[2], figure.drawing);
-  write_text(paths[3], figure.csv);
+  write_file(paths[3], figure.csv);
   return paths;
 }
 

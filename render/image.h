@@ -40,8 +40,7 @@ Image downsample(const Image& source, int factor, RowOrder rows = RowOrder::top_
 /// Key and text of the text chunks of a PNG file; keys 1-79 Latin characters, text UTF-8.
 using PngText = std::vector<std::pair<std::string, std::string>>;
 
-/// Writes to a temporary file beside `path`, then renames: the name never shows an incomplete file.
-/// Throws std::runtime_error with path and reason; the temporary file is gone then.
+/// Written by write_file(); throws std::runtime_error with path and reason.
 /// compression: zlib level 0-9; no PNG filter, which suits flat, smooth pictures best.
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text = {}, int compression = 6);
 

@@ -1,9 +1,9 @@
 #include "image.h"
 
-#include <fcntl.h>
+#include "file.h"
+
 #include <fmt/format.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -122,33 +122,6 @@ bool read_rows(Reader& r, png_bytep* rows) {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& path, const Image& image, const PngText& text, int compression) {
-  std::filesystem::path temporary = path;
-  temporary.replace_filename(fmt::format(".{}.{}.tmp", path.filename().string(), ::getpid()));
-  // Nobody else's file or link is written through: the temporary file is new.
-  std::remove(temporary.c_str());
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  std::FILE* file = descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
-  if (!file) fail(path, std::string("cannot be written: ") + std::strerror(errno));
-  std::vector<png_text> chunks = chunks_of(text);
-  Failure failure;
-  errno = 0;
-  const bool written = write_stream(file, image, chunks, compression, failure);
-  int error = written ? 0 : (errno ? errno : EIO);
-  if (std::fclose(file) != 0 && !error) error = errno;
-  std::string reason = error ? std::strerror(error) : "";
-  if (!error && std::rename(temporary.c_str(), path.c_str()) != 0) {
-    error = errno;
-    reason = std::strerror(error);
-  }
-  if (error) {
-    std::remove(temporary.c_str());
-    // libpng's own words name bad input (a keyword too long); "Write Error" says less than errno
-    const bool own_words = failure.text[0] != '\0' && std::strcmp(failure.text, "Write Error") != 0;
-    fail(path, "cannot be written: " + (own_words ? std::string(failure.text) : reason));
-  }
-}
-
 std::string png_bytes(const Image& image, const PngText& text, int compression) {
   char* bytes = nullptr;
   std::size_t size = 0;
@@ -160,8 +133,18 @@ std::string png_bytes(const Image& image, const PngText& text, int compression) 
   const bool closed = std::fclose(stream) == 0;
   const std::string result(bytes ? bytes : "", bytes ? size : 0);
   std::free(bytes);
-  if (!written || !closed) throw std::runtime_error(std::string("a picture cannot be encoded: ") + failure.text);
+  if (!written || !closed) throw std::runtime_error(std::string("the picture cannot be encoded: ") + failure.text);
   return result;
+}
+
+void write_png(const std::filesystem::path& path, const Image& image, const PngText& text, int compression) {
+  std::string bytes;
+  try {
+    bytes = png_bytes(image, text, compression);
+  } catch (const std::runtime_error& error) {
+    fail(path, std::string("cannot be written: ") + error.what());
+  }
+  write_file(path, bytes);
 }
 
 PngFile read_png(std::FILE* file, const std::filesystem::path& path) {
