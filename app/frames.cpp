@@ -6,6 +6,8 @@
 #include "progress.h"
 #include "version.h"
 
+#include "render/file.h"
+
 #include <fmt/format.h>
 
 #include <stdlib.h>
@@ -66,6 +68,8 @@ render::PngText picture_text(const PictureSource& source, const Studio& studio, 
 
 std::string hash_of(const Production& production, double time) { return fmt::format("{}-{:.17g}", production.hash, time); }
 
+fs::path name_of_frame(std::size_t number) { return fmt::format("{:06}.png", number); }
+
 /// The numbers of the frames that this process draws, and what becomes of them.
 struct Task {
   std::size_t number;
@@ -78,7 +82,7 @@ std::vector<Task> tasks_of(const Production& production, const std::vector<doubl
                            const Options& options) {
   std::vector<Task> tasks;
   for (auto f = static_cast<std::size_t>(options.shard); f < times.size(); f += static_cast<std::size_t>(options.shards)) {
-    Task task{f, frames / fmt::format("{:06}.png", f), hash_of(production, times[f]), false};
+    Task task{f, frames / name_of_frame(f), hash_of(production, times[f]), false};
     task.current = options.shader_dir.empty() && is_current(task.path, task.hash);
     tasks.push_back(std::move(task));
   }
@@ -96,6 +100,21 @@ void remove_drafts(const fs::path& frames, const Options& options) {
         number % options.shards == options.shard)
       fs::remove(entry.path(), error);
   }
+}
+
+void remove_movie(const fs::path& movie) {
+  std::error_code error;
+  fs::remove(movie, error);
+  if (error) throw std::runtime_error(fmt::format("cannot replace '{}': {}", movie.string(), error.message()));
+}
+
+/// A copy of the frame nearest to `wanted`.
+fs::path write_poster(const fs::path& folder, const std::vector<double>& times, double wanted) {
+  const auto nearest = std::min_element(times.begin(), times.end(),
+                                        [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
+  const fs::path poster = folder / "poster.png";
+  render::write_file(poster, read_whole_file(folder / "frames" / name_of_frame(static_cast<std::size_t>(nearest - times.begin()))));
+  return poster;
 }
 
 /// The movie under way; a failure of ffmpeg ends it, not the frames.
@@ -122,7 +141,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
                           bool redo_movie) {
   const Settings& settings = sources.front().settings;
   const MovieFormat& format = find_movie_format(settings.movie.format);
-  const fs::path frames = folder / "frames", movie = folder / fmt::format("movie.{}", format.name);
+  const fs::path frames = folder / "frames", movie = folder / movie_name(format);
   if (options.shards == 1) check_movie(format, settings.view.size[0], settings.view.size[1]);
   const Production production = prepare_pictures(sources);
   const std::vector<double> times = frame_times(longest(sources).trajectory, settings.movie);
@@ -135,9 +154,17 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
   const std::vector<Task> tasks = tasks_of(production, times, frames, options);
   for (const Task& task : tasks) report.kept += task.current;
   const bool all_kept = report.kept == static_cast<std::int64_t>(tasks.size());
+  // A movie that is there is one of all these frames: it goes before the first of them does.
+  if (!all_kept) remove_movie(movie);
   if (all_kept && !redo_movie && fs::exists(movie)) report.movie = movie;
   const bool encode = options.shards == 1 && report.movie.empty();
-  if (all_kept && !encode) return report;
+  const auto finish_poster = [&] {
+    if (options.shards == 1 && settings.movie.poster) report.poster = write_poster(folder, times, *settings.movie.poster);
+  };
+  if (all_kept && !encode) {
+    finish_poster();
+    return report;
+  }
 
   // Software OpenGL has threads of its own; the pictures do not depend on their number.
   if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
@@ -146,6 +173,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
   if (encode) {
     try {
       film.encoder.emplace(format, movie, production.width, production.height, settings.movie.frame_rate);
+      remove_movie(movie);
     } catch (const FfmpegMissing& missing) {
       report.remark = missing.what();
     }
@@ -188,14 +216,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
     film.encoder->finish();
     report.movie = movie;
   });
-  if (options.shards == 1 && settings.movie.poster) {
-    const auto nearest = std::min_element(times.begin(), times.end(), [&](double a, double b) {
-      return std::abs(a - *settings.movie.poster) < std::abs(b - *settings.movie.poster);
-    });
-    report.poster = folder / "poster.png";
-    fs::copy_file(frames / fmt::format("{:06}.png", nearest - times.begin()), report.poster,
-                  fs::copy_options::overwrite_existing);
-  }
+  finish_poster();
   return report;
 }
 

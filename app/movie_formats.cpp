@@ -30,6 +30,8 @@ const std::vector<MovieFormat>& movie_formats() {
   return rows;
 }
 
+std::string movie_name(const MovieFormat& format) { return fmt::format("movie.{}", format.name); }
+
 const MovieFormat& find_movie_format(std::string_view name) {
   if (const MovieFormat* row = sim::find_row(movie_formats(), name)) return *row;
   throw std::invalid_argument("unknown format '" + std::string(name) + "'" +

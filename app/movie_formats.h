@@ -16,6 +16,8 @@ struct MovieFormat {
   std::vector<std::string> encoder;  ///< arguments of ffmpeg after the input
 };
 const std::vector<MovieFormat>& movie_formats();
+/// In an output folder.
+std::string movie_name(const MovieFormat&);
 /// Throws std::invalid_argument that names the nearest known format.
 const MovieFormat& find_movie_format(std::string_view name);
 

@@ -1,11 +1,12 @@
 #include "output.h"
 
+#include "movie_formats.h"
 #include "scene_file.h"
 #include "scene_text.h"
 
-#include <fcntl.h>
+#include "render/file.h"
+
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -23,25 +24,7 @@ void write_whole_file(const fs::path& path, const std::string& text) {
       throw std::system_error(errno, std::generic_category(), "cannot write to standard output");
     return;
   }
-  std::error_code error;
-  const fs::path target = fs::is_symlink(path, error) ? fs::canonical(path, error) : path;
-  // A pipe or a device is written to as it is; only a file can be replaced by a complete one.
-  const bool replaces = error || !fs::exists(target, error) || fs::is_regular_file(target, error);
-  const fs::path draft = replaces ? fs::path(fmt::format("{}.{}.tmp", target.string(), ::getpid())) : target;
-  // Nobody else's file or link is written through: the draft is new.
-  if (replaces) ::unlink(draft.c_str());
-  const int file = ::open(draft.c_str(), replaces ? O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC : O_WRONLY | O_CLOEXEC, 0666);
-  int reason = file < 0 ? errno : 0;
-  for (std::string_view left = text; reason == 0 && !left.empty();) {
-    const ssize_t done = ::write(file, left.data(), left.size());
-    if (done >= 0) left.remove_prefix(static_cast<std::size_t>(done));
-    else if (errno != EINTR) reason = errno;
-  }
-  if (file >= 0 && ::close(file) != 0 && reason == 0) reason = errno;
-  if (replaces && reason == 0 && ::rename(draft.c_str(), target.c_str()) != 0) reason = errno;
-  if (reason == 0) return;
-  if (replaces && file >= 0) ::unlink(draft.c_str());
-  throw std::runtime_error(fmt::format("cannot write '{}': {}", path.string(), std::strerror(reason)));
+  render::write_file(path, text);
 }
 
 std::string read_whole_file(const fs::path& path) {
@@ -114,10 +97,14 @@ FolderState claim_folder(const fs::path& folder, const Settings& settings, bool 
   if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
   // Only what an earlier run of ours left there: its scene.toml says so.
   if (state == FolderState::fresh && fs::exists(folder / "scene.toml")) {
-    for (const char* old :
-         {"trajectory.h5", "movie.mp4", "movie.mkv", "movie.gif", "movie.webp", "poster.png", "scene.toml"}) fs::remove(folder / old, error);
+    for (const char* old : {"trajectory.h5", "poster.png", "scene.toml"}) fs::remove(folder / old, error);
+    for (const MovieFormat& format : movie_formats()) fs::remove(folder / movie_name(format), error);
     remove_frames(folder / "frames", 0);
   }
+  // From here on the folder says that its movie and poster are of this scene.
+  if (state == FolderState::same_physics)
+    for (const std::string& old : {movie_name(find_movie_format(settings.movie.format)), std::string("poster.png")})
+      fs::remove(folder / old, error);
   if (state != FolderState::same) write_whole_file(folder / "scene.toml", write_scene(settings));
   return state;
 }

@@ -9,7 +9,7 @@
 
 namespace app {
 
-/// Writes beside the name, then renames. "-" is standard output.
+/// By render::write_file(); "-" is standard output.
 void write_whole_file(const std::filesystem::path&, const std::string& text);
 std::string read_whole_file(const std::filesystem::path&);
 

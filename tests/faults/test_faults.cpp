@@ -260,6 +260,54 @@ TEST_CASE("an ffmpeg that dies in the middle costs the movie and nothing else", 
   CHECK(desk.names("out") == desk.names("whole"));
 }
 
+TEST_CASE("a movie and a poster of earlier pictures never pass as those of the present ones", "[faults]") {
+  const Desk desk(scene("0.5", "[movie]\nposter = 0.3\n"));
+  const std::vector<std::string> plain{"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"};
+  std::vector<std::string> outline = plain;
+  outline.insert(outline.end(), {"--set", "view.style=outline"});
+  REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("whole"), "-q", "--set", "view.style=outline"}).status == 0);
+  const std::string movie = support::read_file(desk / "whole/movie.mp4"), poster = support::read_file(desk / "whole/poster.png");
+  fs::create_directory(desk / "bin");
+  const auto with_ffmpeg = [&](const std::string& last) {
+    support::write_file(desk / "bin/ffmpeg", "#!/bin/sh\ncat >/dev/null\n" + last + "\n");
+    fs::permissions(desk / "bin/ffmpeg", fs::perms::owner_all);
+    return "PATH=" + desk.file("bin") + ":/usr/bin:/bin";
+  };
+  const auto same_now = [&] {
+    CHECK(desk(outline).status == 0);
+    CHECK(support::read_file(desk / "out/movie.mp4") == movie);
+    CHECK(support::read_file(desk / "out/poster.png") == poster);
+  };
+
+  REQUIRE(desk(plain).status == 0);
+  REQUIRE(support::read_file(desk / "out/movie.mp4") != movie);
+  CHECK(desk.with({with_ffmpeg("exit 1")}, outline).status == 1);
+  CHECK(desk.names("out").count("movie.mp4") == 0);
+  same_now();
+
+  // Killed between the last frame and the end of the movie.
+  fs::remove_all(desk / "out");
+  REQUIRE(desk(plain).status == 0);
+  std::vector<std::string> words{"/usr/bin/env", with_ffmpeg("touch " + desk.file("all-read") + "; exec sleep 1000"), TANKTREAD_PROGRAM};
+  words.insert(words.end(), outline.begin(), outline.end());
+  const pid_t child = support::start(desk, words);
+  const bool waits = support::wait_for(desk / "all-read");
+  kill(child, SIGKILL);
+  CHECK(support::finish(desk, child).status == -SIGKILL);
+  REQUIRE(waits);
+  CHECK(desk.names("out").count("movie.mp4") == 0);
+  same_now();
+
+  // Only the movie's own settings changed, and ffmpeg fails; then a poster that has gone.
+  std::vector<std::string> faster = outline;
+  faster.insert(faster.end(), {"--set", "movie.frame_rate=7"});
+  CHECK(desk.with({with_ffmpeg("exit 1")}, faster).status == 1);
+  CHECK(desk.names("out").count("movie.mp4") == 0);
+  same_now();
+  fs::remove(desk / "out/poster.png");
+  same_now();
+}
+
 TEST_CASE("without OpenGL libraries a run is refused before it simulates, and a simulation runs", "[faults]") {
   const Desk desk;
   const Outcome o = desk.with(preload("no_drivers"), {"run", desk.file("s.toml"), "-o", desk.file("out")});
