@@ -1,5 +1,6 @@
 #include "near.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -54,12 +55,36 @@ NearestPoint nearest_point(const Coefficients& x, const Vec3& target, const Vec3
   return {s, position, distance, normal.dot(target - position) < 0};
 }
 
-PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
-                  NearOrder order) {
+namespace {
+
+/// The graded grid about the nearest point, in the frame where that is the pole: nt x nf arrays.
+struct GradedGrid {
+  int p;
+  double theta0, phi0;
+  LegendreTable table;  ///< of the graded colatitudes
+  Matrix fourier;       ///< (2p+1) x nf
+  Eigen::ArrayXXd r[3], n[3], rr, area;  ///< target - y, weighted normal, |r|^2, dA
+};
+
+/// Separable synthesis of one field given by its coefficients at the pole's frame: nt x (2p+1) spectra.
+Matrix spectra(const GradedGrid& g, const Matrix& values, const Matrix& legendre, int column) {
+  Matrix s(legendre.rows(), 2 * g.p + 1);
+  Vector c;
+  for (int m = -g.p; m <= g.p; ++m) {
+    const int k = std::abs(m), first = legendre_index(g.p, k, k), count = g.p - k + 1;
+    c.resize(count);
+    for (int n = k; n <= g.p; ++n) c[n - k] = values(coefficient_index(n, m), column);
+    s.col(g.p + m).noalias() = legendre.middleCols(first, count) * c;
+  }
+  return s;
+}
+
+GradedGrid graded_grid(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
+                       NearOrder order) {
   const int p = plan.order(), nt = order.latitudes, nf = order.longitudes, width = 2 * p + 1;
   const Vec3& s = nearest.parameter;
-  const double theta0 = std::atan2(std::hypot(s[0], s[1]), s[2]), phi0 = std::atan2(s[1], s[0]);
-  const Matrix turned = plan.to_pole(resized(x, p).values, theta0, phi0);
+  GradedGrid g{p, std::atan2(std::hypot(s[0], s[1]), s[2]), std::atan2(s[1], s[0]), {}, Matrix(width, nf), {}, {}, {}, {}};
+  const Matrix turned = plan.to_pole(resized(x, p).values, g.theta0, g.phi0);
 
   // Graded colatitudes. The metric at the pole is that of the longer tangent: the narrower width in the parameter.
   const Matrix pole_tangents = [&] {
@@ -77,61 +102,86 @@ PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& t
     t[i] = eps * std::sinh(a * u);
     weight[i] = 0.5 * rule.weight[i] * eps * a * std::cosh(a * u) * 2 * pi / nf;
   }
-
-  // Separable synthesis of x, x_t, x_f; then the kernels; then the transposed synthesis of the 12 components.
-  const LegendreTable table = legendre_table(p, t, 1);
-  Matrix fourier(width, nf), slope(width, nf);
+  g.table = legendre_table(p, t, 1);
+  Matrix slope(width, nf);
   for (int j = 0; j < nf; ++j)
     for (int m = 0; m <= p; ++m) {
       const double f = 2 * pi * j / nf, k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
       const double c = k * std::cos(m * f), d = k * std::sin(m * f);
-      fourier(p + m, j) = c, slope(p + m, j) = -m * d;
-      if (m > 0) fourier(p - m, j) = d, slope(p - m, j) = m * c;
+      g.fourier(p + m, j) = c, slope(p + m, j) = -m * d;
+      if (m > 0) g.fourier(p - m, j) = d, slope(p - m, j) = m * c;
     }
-  Matrix y[3], y_t[3], y_f[3], value(nt, width), dt(nt, width);
+  Matrix y_t[3], y_f[3];
   for (int d = 0; d < 3; ++d) {
-    for (int m = -p; m <= p; ++m) {
-      const int k = std::abs(m), first = legendre_index(p, k, k), count = p - k + 1;
-      Vector column(count);
-      for (int n = k; n <= p; ++n) column[n - k] = turned(coefficient_index(n, m), d);
-      value.col(p + m).noalias() = table.value.middleCols(first, count) * column;
-      dt.col(p + m).noalias() = table.d1.middleCols(first, count) * column;
-    }
-    y[d] = value * fourier;
-    y_t[d] = dt * fourier;
+    const Matrix value = spectra(g, turned, g.table.value, d);
+    g.r[d] = target[d] - (value * g.fourier).array();
+    y_t[d] = spectra(g, turned, g.table.d1, d) * g.fourier;
     y_f[d] = value * slope;
   }
-  Eigen::ArrayXXd r[3], n[3];
   for (int d = 0; d < 3; ++d) {
     const int e = (d + 1) % 3, f = (d + 2) % 3;
-    r[d] = target[d] - y[d].array();
-    n[d] = y_t[e].array() * y_f[f].array() - y_t[f].array() * y_f[e].array();
+    g.n[d] = (y_t[e].array() * y_f[f].array() - y_t[f].array() * y_f[e].array()).colwise() * weight.array();
   }
-  const Eigen::ArrayXXd rr = r[0].square() + r[1].square() + r[2].square(), inverse = rr.rsqrt();
-  const Eigen::ArrayXXd area = (n[0].square() + n[1].square() + n[2].square()).sqrt().colwise() * weight.array();
-  const Eigen::ArrayXXd s0 = area * inverse / (8 * pi), s2 = s0 * inverse.square();
-  const Eigen::ArrayXXd rn = (r[0] * n[0] + r[1] * n[1] + r[2] * n[2]).colwise() * weight.array();
-  const Eigen::ArrayXXd d5 = 3 / (4 * pi) * rn * inverse.square().square() * inverse;
+  g.rr = g.r[0].square() + g.r[1].square() + g.r[2].square();
+  g.area = (g.n[0].square() + g.n[1].square() + g.n[2].square()).sqrt();
+  return g;
+}
 
+/// 3/(4 pi) (r.n)/|r|^5, the scalar of the double layer.
+Eigen::ArrayXXd dual_scalar(const GradedGrid& g, const Eigen::ArrayXXd& inverse) {
+  return 3 / (4 * pi) * (g.r[0] * g.n[0] + g.r[1] * g.n[1] + g.r[2] * g.n[2]) * inverse.square().square() * inverse;
+}
+
+}  // namespace
+
+PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
+                  NearOrder order) {
+  const GradedGrid g = graded_grid(plan, x, target, nearest, order);
+  const int p = g.p;
+  const Eigen::ArrayXXd inverse = g.rr.rsqrt(), s0 = g.area * inverse / (8 * pi), s2 = s0 * inverse.square();
+  const Eigen::ArrayXXd d5 = dual_scalar(g, inverse);
+
+  // The transposed synthesis of the 12 components.
   PointRow row{Matrix(coefficient_count(p), 6), Matrix(coefficient_count(p), 6)};
   int block = 0;
   for (int c = 0; c < 3; ++c)
     for (int e = c; e < 3; ++e, ++block) {
-      const Eigen::ArrayXXd rce = r[c] * r[e];
+      const Eigen::ArrayXXd rce = g.r[c] * g.r[e];
       for (const bool dual : {false, true}) {
         const Matrix kernel = dual ? Matrix(d5 * rce) : c == e ? Matrix(s0 + s2 * rce) : Matrix(s2 * rce);
-        const Matrix spectrum = kernel * fourier.transpose();  // nt x (2p+1)
+        const Matrix spectrum = kernel * g.fourier.transpose();  // nt x (2p+1)
         auto out = (dual ? row.dual : row.single).col(block);
         for (int m = -p; m <= p; ++m) {
           const int k = std::abs(m), first = legendre_index(p, k, k), count = p - k + 1;
-          const Vector column = table.value.middleCols(first, count).transpose() * spectrum.col(p + m);
+          const Vector column = g.table.value.middleCols(first, count).transpose() * spectrum.col(p + m);
           for (int l = k; l <= p; ++l) out[coefficient_index(l, m)] = column[l - k];
         }
       }
     }
-  row.single = plan.from_pole(row.single, theta0, phi0);
-  row.dual = plan.from_pole(row.dual, theta0, phi0);
+  row.single = plan.from_pole(row.single, g.theta0, g.phi0);
+  row.dual = plan.from_pole(row.dual, g.theta0, g.phi0);
   return row;
+}
+
+Vec3 near_velocity(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
+                   NearOrder order, const Coefficients& force, const Coefficients* dual) {
+  const GradedGrid g = graded_grid(plan, x, target, nearest, order);
+  const auto sampled = [&](const Coefficients& density) {
+    const Matrix turned = plan.to_pole(resized(density, g.p).values, g.theta0, g.phi0);
+    std::array<Eigen::ArrayXXd, 3> values;
+    for (int d = 0; d < 3; ++d) values[d] = (spectra(g, turned, g.table.value, d) * g.fourier).array();
+    return values;
+  };
+  const Eigen::ArrayXXd inverse = g.rr.rsqrt(), s0 = g.area * inverse / (8 * pi);
+  const auto f = sampled(force);
+  Eigen::ArrayXXd along = s0 * inverse.square() * (g.r[0] * f[0] + g.r[1] * f[1] + g.r[2] * f[2]);
+  if (dual) {
+    const auto u = sampled(*dual);
+    along += dual_scalar(g, inverse) * (g.r[0] * u[0] + g.r[1] * u[1] + g.r[2] * u[2]);
+  }
+  Vec3 velocity;
+  for (int d = 0; d < 3; ++d) velocity[d] = (s0 * f[d] + along * g.r[d]).sum();
+  return velocity;
 }
 
 Vec3 apply_row(const Matrix& row, const Matrix& density) {

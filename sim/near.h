@@ -31,6 +31,10 @@ struct PointRow {
 };
 PointRow near_row(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder);
 
+/// The same applied to densities of degree <= p at once, for a point that is wanted once: S force + D dual (nullptr: none).
+Vec3 near_velocity(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder,
+                   const Coefficients& force, const Coefficients* dual);
+
 /// Velocity of a row: sum over the tensor blocks.
 Vec3 apply_row(const Matrix& row, const Matrix& density);
 

@@ -6,37 +6,18 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 FlowSource::Level level(Plans& plans, const FlowSource& source, int order) {
   const Basis& basis = plans.basis(source.position.order, order);
-  const Geometry g = geometry(basis, source.position);
   FlowSource::Level l;
-  l.sources.points = g.x.value;
-  l.sources.area = g.dA;
-  l.sources.normals = g.n.array().colwise() * g.dA.array();
-  const Vector along_t = g.E.cwiseSqrt(), along_f = g.G.cwiseSqrt().cwiseQuotient(basis.sin_theta());
-  l.sources.spacing = pi / basis.latitudes() * along_t.cwiseMax(along_f);
-  l.sources.low = g.x.value.colwise().minCoeff().transpose();
-  l.sources.high = g.x.value.colwise().maxCoeff().transpose();
+  l.sources = make_sources(basis, source.position);
   l.force = basis.synthesize(source.densities.force).values;
   if (source.viscosity_contrast != 1) l.dual = basis.synthesize(source.densities.dual).values;
   return l;
-}
-
-/// Nearest source point and its distance.
-std::pair<Eigen::Index, double> nearest_source(const Sources& s, const Vec3& x) {
-  Eigen::Index k = 0;
-  const double square = ((s.points.col(0).array() - x[0]).square() + (s.points.col(1).array() - x[1]).square() +
-                         (s.points.col(2).array() - x[2]).square())
-                            .minCoeff(&k);
-  return {k, std::sqrt(square)};
 }
 
 /// What one membrane contributes at one point.
@@ -58,9 +39,8 @@ Contribution near_contribution(const FlowSource& source, const Vec3& x, const Ve
     c.velocity = sample_points(source.velocity, nearest.parameter.transpose()).row(0).transpose();
     return c;
   }
-  const PointRow row = near_row(*source.rotation, source.position, x, nearest, options.near_order);
-  c.velocity = apply_row(row.single, source.densities.force.values);
-  if (source.viscosity_contrast != 1) c.velocity += apply_row(row.dual, source.densities.dual.values);
+  c.velocity = near_velocity(*source.rotation, source.position, x, nearest, options.near_order, source.densities.force,
+                             source.viscosity_contrast != 1 ? &source.densities.dual : nullptr);
   return c;
 }
 
@@ -109,7 +89,7 @@ FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const
   }
   std::vector<Coefficients> repelled;
   if (n > 1 && numerics.repulsion_strength > 0) {
-    const InteractionOptions interaction{numerics.interaction_order, true, {numerics.near_latitudes, numerics.near_longitudes}};
+    const InteractionOptions interaction{numerics.interaction_order, numerics.near_rule, {numerics.near_latitudes, numerics.near_longitudes}};
     repelled = repulsion(plan_interaction(plans, positions, materials, interaction), numerics.repulsion_strength,
                          numerics.repulsion_range);
   }
