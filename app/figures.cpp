@@ -10,6 +10,7 @@
 #include "sim/dealias.h"
 #include "sim/diagnostics.h"
 #include "sim/norms.h"
+#include "sim/velocity.h"
 
 #include <fmt/format.h>
 
@@ -23,20 +24,41 @@ namespace {
 /// An angle of a direction without sense, continued from the one before: no jump by 180 degrees.
 double unwrapped(double angle, double before) { return angle + 180 * std::round((before - angle) / 180); }
 
+/// Area radius of the first vesicle.
+double length_of(const sim::TrajectoryReader& trajectory) {
+  sim::Plans plans;
+  return std::sqrt(sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1).area / sim::default_area);
+}
+
+/// What the curves of several trajectories share: a scale that one of them lacks is used for none.
+struct Scales {
+  TimeUnit time;
+  bool rate = true, bending = true;
+};
+Scales shared_scales(const std::vector<FigureSource>& sources) {
+  Scales s{time_unit(sources.front().settings.scene), true, true};
+  for (const FigureSource& source : sources) {
+    const sim::Scene& scene = source.settings.scene;
+    s.rate = s.rate && time_unit(scene).symbol != TimeUnit{}.symbol;
+    for (const sim::VesicleParameters& v : scene.vesicles) s.bending = s.bending && v.bending_modulus > 0;
+  }
+  if (!s.rate) s.time = {};
+  return s;
+}
+
 /// Measures of one trajectory, taken once for all the quantities that are asked for.
 class Measurements {
  public:
-  Measurements(const FigureSource& source, double length) : source_(source), unit_(time_unit(source.settings.scene)) {
-    units_.length = length;
-    units_.rate = unit_.factor;
-    units_.bending_modulus = source.settings.scene.vesicles.front().bending_modulus;
-  }
+  Measurements(const FigureSource& source, const Scales& scales)
+      : source_(source), scales_(scales), time_factor_(scales.rate ? time_unit(source.settings.scene).factor : 1),
+        length_(length_of(source.trajectory)) {}
 
   /// A series a curve and vesicle; of the first vesicle and curve only, without names, when `single`.
   std::vector<render::Series> series(const QuantityRow& row, bool single) {
     std::vector<render::Series> all;
     const int vesicles = row.per_vesicle && !single ? source_.trajectory.layout().vesicles : 1;
     for (int v = 0; v < vesicles; ++v) {
+      const QuantityUnits units = units_of(static_cast<std::size_t>(v));
       const std::size_t first = all.size();
       const std::size_t curves = single ? 1 : row.curves.size();
       for (std::size_t c = 0; c < curves; ++c) {
@@ -44,7 +66,7 @@ class Measurements {
         const auto add = [&](const std::string& word) { name += (name.empty() ? "" : ", ") + word; };
         if (vesicles > 1) add(fmt::format("vesicle {}", v));
         if (!source_.name.empty()) add(source_.name);
-        render::Series one{name, row.axis, {}, {}, row.scale, {}, v % 2 == 1, {}};  // dashed: where two agree, both are seen
+        render::Series one{name, axis_label(row, units), {}, {}, row.scale, {}, v % 2 == 1, {}};  // dashed: where two agree, both are seen
         if (vesicles > 1 && curves > 1 && source_.name.empty()) {  // colours tell the curves, dashes the vesicles
           one.colour = c;
           one.legend = v == 0 ? row.curves[c] : "";
@@ -53,17 +75,17 @@ class Measurements {
       }
       const auto put = [&](double time, const std::vector<double>& values) {
         for (std::size_t c = 0; c < curves; ++c) {
-          all[first + c].times.push_back(unit_.factor * time);
+          all[first + c].times.push_back(time_factor_ * time);
           all[first + c].values.push_back(values[c]);
         }
       };
       if (row.of_step) {
         for (const sim::StepRecord& record : steps())
-          put(record.time, row.of_step(record, static_cast<std::size_t>(v), units_));
+          put(record.time, row.of_step(record, static_cast<std::size_t>(v), units));
       } else {
         const auto& states = measures();
         for (std::size_t k = 0; k < states.size(); ++k)
-          put(times_[k], row.of_state(states[k][static_cast<std::size_t>(v)], units_));
+          put(times_[k], row.of_state(states[k][static_cast<std::size_t>(v)], units));
       }
       if (row.differentiate)
         for (std::size_t c = first; c < all.size(); ++c) differentiate(all[c]);
@@ -72,6 +94,10 @@ class Measurements {
   }
 
  private:
+  QuantityUnits units_of(std::size_t vesicle) const {
+    const sim::Scene& scene = source_.settings.scene;
+    return {length_, scales_.rate ? time_factor_ : 0, scales_.bending ? scene.vesicles[vesicle].bending_modulus : 0};
+  }
   const std::vector<sim::StepRecord>& steps() {
     if (steps_.empty()) steps_ = source_.trajectory.steps();
     return steps_;
@@ -89,7 +115,9 @@ class Measurements {
           area.push_back(initial.area);
           volume.push_back(initial.volume);
         }
-        VesicleSample sample{sim::measure(plans_, state.vesicles[v], area[v], volume[v])};
+        sim::VesicleState relative = state.vesicles[v];
+        relative.velocity.values.row(0) -= std::sqrt(sim::default_area) * sim::centroid_velocity(plans_, relative).transpose();
+        VesicleSample sample{sim::measure(plans_, relative, area[v], volume[v])};
         const Eigen::Matrix3d m = render::volume_moments(state.vesicles[v].position).second;
         const double mean = (m(0, 0) + m(2, 2)) / 2, half = std::hypot((m(0, 0) - m(2, 2)) / 2, m(0, 2));
         const double l = std::sqrt(mean + half), b = std::sqrt(mean - half);
@@ -112,8 +140,8 @@ class Measurements {
   }
 
   const FigureSource& source_;
-  TimeUnit unit_;
-  QuantityUnits units_;
+  Scales scales_;
+  double time_factor_, length_;
   sim::Plans plans_;
   std::vector<double> times_;
   std::vector<std::vector<VesicleSample>> measures_;  ///< state, vesicle
@@ -131,12 +159,15 @@ double value_at(const render::Series& s, double time) {
   return s.values[k - 1] + share * (s.values[k] - s.values[k - 1]);
 }
 
-std::vector<render::Plot> phase_plots(const std::vector<FigureSource>& sources, const render::FigureParameters& p, double length) {
+std::vector<render::Plot> phase_plots(const std::vector<FigureSource>& sources, const render::FigureParameters& p) {
   const QuantityRow &x = find_quantity(p.abscissa), &y = find_quantity(p.ordinate);
-  render::Plot plot{{x.axis, x.scale, true, true}, {y.axis, y.scale, true, true}, {}, {}, {}, {}};
+  const Scales scales = shared_scales(sources);
+  render::Plot plot{{"", x.scale, true, true}, {"", y.scale, true, true}, {}, {}, {}, {}};
   for (const FigureSource& source : sources) {
-    Measurements measurements(source, length);
+    Measurements measurements(source, scales);
     const render::Series a = measurements.series(x, true).front(), b = measurements.series(y, true).front();
+    plot.x.label = a.axis;
+    plot.y.label = b.axis;
     render::Curve curve;
     curve.name = source.name;
     curve.colour = plot.curves.size();
@@ -254,8 +285,8 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
   const TimeUnit unit = time_unit(first.settings.scene);
   input.time_symbol = unit.symbol;
   input.time_factor = unit.factor;
-  sim::Plans plans;
-  input.length = std::sqrt(sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1).area / sim::default_area);
+  input.length = length_of(trajectory);
+  const Scales scales = shared_scales(sources);
   std::vector<double> times;
   for (std::int64_t k = 0; k < trajectory.count(); ++k) times.push_back(trajectory.time(k));
   const auto take = [&](const std::vector<std::size_t>& chosen) {
@@ -264,15 +295,16 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
   switch (kind.needs) {
     case render::FigureNeeds::series:
       input.time_factor = 1;  // the series bring their own
+      input.time_symbol = scales.time.symbol;
       for (const FigureSource& source : sources) {
-        Measurements measurements(source, input.length);
+        Measurements measurements(source, scales);
         for (const std::string& name : parameters.quantities)
           for (render::Series& series : measurements.series(find_quantity(name), false)) input.series.push_back(std::move(series));
       }
       break;
     case render::FigureNeeds::plots:
       if (kind.name == "phase") {
-        input.plots = phase_plots(sources, parameters, input.length);
+        input.plots = phase_plots(sources, parameters);
       } else if (kind.name == "spectra") {
         take(render::chosen_states(times, parameters));
         input.plots = spectra_plots(input);

@@ -14,6 +14,7 @@ using Values = std::vector<double>;
 using render::Scale;
 
 double tension_unit(const Units& u) { return u.bending_modulus > 0 ? u.bending_modulus / (u.length * u.length) : 1; }
+double velocity_unit(const Units& u) { return u.rate > 0 ? u.rate * u.length : 1; }
 
 }  // namespace
 
@@ -22,7 +23,8 @@ const std::vector<QuantityRow>& quantities() {
       {"inclination", "angle of the long axis in the shear plane, continued over ±90°", "inclination θ (°)", Scale::degrees, {"θ"},
        [](const Measures& m, const Units&) -> Values { return {m.inclination_deg}; }, nullptr},
       {"inclination-rate", "its rate of change in units of the flow's rate", "(dθ/dt) / γ̇", Scale::linear, {"dθ/dt"},
-       [](const Measures& m, const Units&) -> Values { return {m.inclination_deg * std::numbers::pi / 180}; }, nullptr, true, true},
+       [](const Measures& m, const Units&) -> Values { return {m.inclination_deg * std::numbers::pi / 180}; }, nullptr, true, true,
+       Scaling::rate, "dθ/dt"},
       {"axes", "semi-axes of the ellipsoid with the same second moments", "axes / R_{0}", Scale::linear, {"a_{1}", "a_{2}", "a_{3}"},
        [](const Measures& m, const Units& u) -> Values { return {m.axes[0] / u.length, m.axes[1] / u.length, m.axes[2] / u.length}; },
        nullptr},
@@ -45,17 +47,18 @@ const std::vector<QuantityRow>& quantities() {
        [](const Measures& m, const Units& u) -> Values {
          return {m.tension_mean / tension_unit(u), m.tension_min / tension_unit(u), m.tension_max / tension_unit(u)};
        },
-       nullptr},
-      {"normal-velocity", "root of its mean square over the membrane: 0 when the shape is steady", "⟨(u·n)^{2}⟩^{1/2} / γ̇R_{0}",
+       nullptr, true, false, Scaling::bending, "σ"},
+      {"normal-velocity", "root of its mean square over the membrane, relative to the centre: 0 when the shape neither changes nor turns", "⟨(u·n)^{2}⟩^{1/2} / γ̇R_{0}",
        Scale::linear, {"u·n"},
-       [](const Measures& m, const Units& u) -> Values { return {m.normal_velocity_l2 / std::sqrt(m.area) / (u.rate * u.length)}; },
-       nullptr},
+       [](const Measures& m, const Units& u) -> Values { return {m.normal_velocity_l2 / std::sqrt(m.area) / velocity_unit(u)}; },
+       nullptr, true, false, Scaling::rate, "⟨(u·n)^{2}⟩^{1/2}"},
       {"gap", "least distance between two membranes", "gap / R_{0}", Scale::linear, {"gap"}, nullptr,
        [](const sim::StepRecord& r, std::size_t, const Units& u) -> Values { return {r.gap / u.length}; }, false},
       {"iterations", "of the linear solver, a step", "iterations", Scale::linear, {"iterations"}, nullptr,
        [](const sim::StepRecord& r, std::size_t, const Units&) -> Values { return {r.iterations}; }, false},
       {"step", "length of the time steps", "γ̇Δt", Scale::linear, {"γ̇Δt"}, nullptr,
-       [](const sim::StepRecord& r, std::size_t, const Units& u) -> Values { return {u.rate * r.dt}; }, false},
+       [](const sim::StepRecord& r, std::size_t, const Units& u) -> Values { return {u.rate > 0 ? u.rate * r.dt : r.dt}; }, false, false,
+       Scaling::rate, "Δt"},
       {"residual", "of the linear solver, relative", "residual", Scale::logarithmic, {"residual"}, nullptr,
        [](const sim::StepRecord& r, std::size_t, const Units&) -> Values { return {r.residual}; }, false},
       {"upsampling", "grid factor of differentiation", "upsampling", Scale::linear, {"upsampling"}, nullptr,
@@ -64,6 +67,12 @@ const std::vector<QuantityRow>& quantities() {
        [](const sim::StepRecord& r, std::size_t v, const Units&) -> Values { return {r.vesicles[v].tail}; }},
   };
   return rows;
+}
+
+std::string axis_label(const QuantityRow& row, const QuantityUnits& units) {
+  const bool bare = (row.scaling == Scaling::rate && units.rate == 0) ||
+                    (row.scaling == Scaling::bending && units.bending_modulus == 0);
+  return bare ? row.bare_axis : row.axis;
 }
 
 const QuantityRow& find_quantity(std::string_view name) {

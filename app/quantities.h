@@ -9,14 +9,15 @@
 
 namespace app {
 
-/// Scales in which quantities are shown.
+/// Scales in which quantities are shown; 0: there is none, and what would be divided by it is shown as it is.
 struct QuantityUnits {
   double length = 1;           ///< area radius R0
-  double rate = 1;             ///< of the flow, 1/time
-  double bending_modulus = 0;  ///< kappa_b; 0: tensions are shown as they are
+  double rate = 0;             ///< of the flow, 1/time
+  double bending_modulus = 0;  ///< kappa_b
 };
+enum class Scaling { nothing, rate, bending };  ///< which of them a quantity needs beside the length
 
-/// What is known of a vesicle at a saved state.
+/// What is known of a vesicle at a saved state; velocities are relative to its centre.
 struct VesicleSample : sim::VesicleMeasures {
   double deformation = 0;  ///< (L - B) / (L + B) of the second moments in the shear plane
 };
@@ -32,7 +33,10 @@ struct QuantityRow {
   std::vector<double> (*of_step)(const sim::StepRecord&, std::size_t, const QuantityUnits&);
   bool per_vesicle = true;    ///< else one curve for all
   bool differentiate = false; ///< the values are the rates of change of what the function gives, per time / rate
+  Scaling scaling = Scaling::nothing;
+  const char* bare_axis = nullptr;  ///< label without that scale
 };
+std::string axis_label(const QuantityRow&, const QuantityUnits&);
 const std::vector<QuantityRow>& quantities();
 /// Throws std::invalid_argument that names the nearest known quantity.
 const QuantityRow& find_quantity(std::string_view name);
