@@ -47,6 +47,12 @@ const toml::source_region& source_of(const toml::table& table, std::string_view 
   return node ? node->source() : table.source();
 }
 
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 /// Is an optional, text or list member of a kind that needs it not given?
 template <class T> bool missing(const T&) { return false; }
 template <class T> bool missing(const std::optional<T>& value) { return !value; }
@@ -115,12 +121,33 @@ struct Reader {
       if (!std::filesystem::is_regular_file(path))
         fail_at(source_of(table, "file"), fmt::format("there is no file '{}'", path.string()));
       p.file = path.string();
+      const std::string own = checksum(text_of(path));
+      if (p.checksum && *p.checksum != own)
+        fail_at(source_of(table, "checksum"), fmt::format("the file '{}' has changed: its checksum is {}", p.file, own));
+      p.checksum = own;
+    } else if (p.checksum) {
+      fail_at(source_of(table, "checksum"), fmt::format("'checksum' is a key of shape 'file', not of '{}'", p.shape));
     }
     try {
       sim::initial_position(p);
     } catch (const std::exception& error) {
       fail_at(source_of(table, p.shape == "file" ? "file" : "shape"), error.what());
     }
+  }
+
+  /// What depends on more than one table.
+  void check_together(const sim::Scene& scene) const {
+    const sim::NumericsParameters& n = scene.numerics;
+    const toml::table* table = root["numerics"].as_table();
+    if (!table) return;
+    for (const sim::VesicleParameters& v : scene.vesicles)
+      if (n.source_order > 0 && n.source_order < v.order)
+        fail_at(source_of(*table, "source_order"), fmt::format("'source_order' must be at least the vesicles' order {}, not {}",
+                                                               v.order, n.source_order));
+    if (n.repulsion_strength > 0 && !n.near_rule)
+      fail_at(source_of(*table, "near_rule"), "the repulsion acts where the near rule does: it needs near_rule = true");
+    if (n.label_order > 0 && n.label_order < 4)
+      fail_at(source_of(*table, "label_order"), fmt::format("'label_order' must be at least 4, or \"auto\", not {}", n.label_order));
   }
 
   template <class P>
@@ -220,7 +247,9 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
   if (const toml::node* title = root.get("title"))
     read_value(sim::Parameter{.name = "title", .unit = "", .meaning = "title of the scene"}, *title,
                settings.scene.title);
-  visit_sections(settings, Reader{root, name, folder, use});
+  const Reader reader{root, name, folder, use};
+  visit_sections(settings, reader);
+  if (use == SceneUse::simulate) reader.check_together(settings.scene);
   if (use == SceneUse::simulate && !settings.scene.placements.empty()) try {
       settings.scene = sim::placed(std::move(settings.scene));
     } catch (const std::invalid_argument& error) {
@@ -238,10 +267,7 @@ Settings read_scene(const std::filesystem::path& path, const std::vector<std::st
   constexpr std::uintmax_t largest = 64 << 20;  // some hundred thousand vesicles
   if (std::filesystem::file_size(path, error) > largest && !error)
     throw std::runtime_error(fmt::format("{}: is too large for a scene", path.string()));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  return parse_scene(text, path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides);
+  return parse_scene(text_of(path), path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides);
 }
 
 }  // namespace app

@@ -1,6 +1,7 @@
 #include "scene_text.h"
 
 #include "scene_file.h"
+#include "scene_values.h"
 
 #include <fmt/format.h>
 
@@ -74,13 +75,6 @@ struct Writer {
   }
 };
 
-/// FNV-1a.
-std::string hash(std::string_view text) {
-  std::uint64_t h = 14695981039346656037ull;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  return fmt::format("{:016x}", h);
-}
-
 }  // namespace
 
 std::string write_scene(const Settings& settings) {
@@ -98,8 +92,9 @@ std::string write_scene(const sim::Scene& scene) {
 std::string physics_hash(const sim::Scene& scene) {
   sim::Scene same = scene;
   same.title.clear();
+  for (sim::VesicleParameters& v : same.vesicles) v.file.clear();  // its checksum counts, not where it lies
   same.numerics.threads = 0;
-  return hash(write_scene(same));
+  return checksum(write_scene(same));
 }
 
 std::string picture_hash(const Settings& settings) {
@@ -109,7 +104,7 @@ std::string picture_hash(const Settings& settings) {
   same.movie.frame_rate = 30;  // of the video, not of a frame; and so on
   same.movie.format = render::MovieParameters{}.format;
   same.movie.poster.reset();
-  return hash(write_scene(same));
+  return checksum(write_scene(same));
 }
 
 }  // namespace app

@@ -156,4 +156,10 @@ void read_value(const sim::Parameter& p, const toml::node& node, sim::Vec3& valu
   value = sim::Vec3(three[0], three[1], three[2]);
 }
 
+std::string checksum(std::string_view bytes) {
+  std::uint64_t h = 14695981039346656037ull;
+  for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  return fmt::format("{:016x}", h);
+}
+
 }  // namespace app

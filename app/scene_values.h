@@ -49,4 +49,7 @@ void read_value(const sim::Parameter& parameter, const toml::node& node, std::ve
   }
 }
 
+/// FNV-1a of bytes, 16 hexadecimal digits: tells that a file has changed, not who changed it.
+std::string checksum(std::string_view bytes);
+
 }  // namespace app

@@ -118,6 +118,7 @@ struct VesicleParameters {
   double density_difference = 0;         ///< inside - outside
   std::vector<std::array<double, 3>> coefficients;  ///< harmonics: terms [n, m, value] of the radius, unit sphere + terms
   std::string file;                      ///< shape "file"
+  std::optional<std::string> checksum;   ///< of the file: resolved scenes say it
 };
 
 /// Area of a vesicle whose size is not given: that of the unit sphere.
@@ -151,6 +152,8 @@ void visit(P& p, V&& v) {
               .meaning = "terms [n, m, value]: radius = 1 + sum of value Y_nm, before scaling"}, p.coefficients);
   v(Parameter{.name = "file", .unit = "", .meaning = "table of points or coefficients, beside the scene", .is_path = true},
     p.file);
+  v(Parameter{.name = "checksum", .unit = "", .meaning = "of the file; a file with another one is refused",
+              .when_absent = "that of the file, whatever it holds"}, p.checksum);
 }
 
 struct NumericsParameters {
@@ -209,7 +212,7 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "near_longitudes", .unit = "", .meaning = "longitudes of the near-singular rule", .minimum = 4,
               .maximum = 512}, p.near_longitudes);
   v(Parameter{.name = "repulsion_strength", .unit = "force/area",
-              .meaning = "traction strength exp(-gap/range) that pushes membranes apart; 0: none", .minimum = 0},
+              .meaning = "traction strength exp(-gap/range) that pushes membranes apart where the near rule acts; 0: none", .minimum = 0},
     p.repulsion_strength);
   v(Parameter{.name = "repulsion_range", .unit = "length", .meaning = "range of the repulsion", .minimum = 0,
               .exclusive_minimum = true}, p.repulsion_range);
@@ -247,7 +250,7 @@ struct PlacementParameters {
   int count = 1;
   double volume_fraction = 0.05;
   double radius = 3;                ///< tube
-  double jitter = 0;                ///< lattice: share of the free space that a centre may move
+  double jitter = 0;                ///< lattice: share of its spacing that a centre may move
   double gap = 0.05;                ///< least distance between two membranes
   std::string orientation = "as-given";
   int seed = 1;

@@ -153,9 +153,9 @@ std::vector<VesicleParameters> from_file(const PlacementParameters& p, const Ves
 
 const std::vector<CatalogueRow<PlacementFunction>>& placement_catalogue() {
   static const std::vector<CatalogueRow<PlacementFunction>> table{
-      {"lattice", "cubic lattice, centres shifted at random by jitter", {"volume_fraction", "jitter", "count"}, lattice},
-      {"box", "at random without overlap in a cube", {"volume_fraction", "gap", "count"}, box},
-      {"tube", "at random without overlap in a tube along x", {"volume_fraction", "radius", "gap", "count"}, tube},
+      {"lattice", "cubic lattice, centres shifted at random by jitter", {"volume_fraction", "jitter", "count", "orientation", "seed"}, lattice},
+      {"box", "at random without overlap in a cube", {"volume_fraction", "gap", "count", "orientation", "seed"}, box},
+      {"tube", "at random without overlap in a tube along x", {"volume_fraction", "radius", "gap", "count", "orientation", "seed"}, tube},
       {"file", "centres from a text table", {"file"}, from_file},
   };
   return table;

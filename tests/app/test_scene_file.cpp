@@ -133,6 +133,33 @@ TEST_CASE("missing files are told", "[scene]") {
   CHECK_THAT(message_of([&] { app::read_scene(folder / "s.toml"); }), Contains("s.toml:13:8") && Contains("blob.txt"));
 }
 
+TEST_CASE("a shape file counts by what it holds, not by where it lies", "[scene]") {
+  const support::TemporaryFolder folder;
+  const std::string text = replaced("shape = \"prolate\"\nreduced_volume = 0.85", "shape = \"file\"\nfile = \"blob.txt\"");
+  const std::string sphere = "coefficients\n1 1 1 0 0\n1 -1 0 1 0\n1 0 0 0 1\n";
+  support::write_file(folder / "s.toml", text);
+  support::write_file(folder / "blob.txt", sphere);
+  const Settings first = app::read_scene(folder / "s.toml");
+  std::filesystem::create_directory(folder / "moved");
+  support::write_file(folder / "moved" / "s.toml", text);
+  support::write_file(folder / "moved" / "blob.txt", sphere);
+  CHECK(app::physics_hash(app::read_scene(folder / "moved" / "s.toml").scene) == app::physics_hash(first.scene));
+  support::write_file(folder / "blob.txt", sphere + "2 0 0.1 0 0\n");
+  CHECK(app::physics_hash(app::read_scene(folder / "s.toml").scene) != app::physics_hash(first.scene));
+  const std::string resolved = write_scene(first);  // says what the file held
+  CHECK_THAT(message_of([&] { parse_scene(resolved, "resolved", folder.path()); }), Contains("blob.txt' has changed"));
+  CHECK_THAT(error_of(good + "checksum = \"1\"\n"), Contains("s.toml:15:12") && Contains("not of 'prolate'"));
+}
+
+TEST_CASE("what two tables say together is checked before the run", "[scene]") {
+  CHECK_THAT(error_of(good + "[numerics]\nsource_order = 8\n"), Contains("s.toml:16:16") && Contains("order 12, not 8"));
+  CHECK_THAT(error_of(good + "[numerics]\nrepulsion_strength = 1\nnear_rule = false\n"),
+             Contains("s.toml:17:13") && Contains("near_rule = true"));
+  CHECK_THAT(error_of(good + "[numerics]\nlabel_order = 1\n"), Contains("s.toml:16:15") && Contains("at least 4"));
+  CHECK_THAT(error_of(good + "[placement]\nkind = \"file\"\nfile = \"c.txt\"\nseed = 3\n"),
+             Contains("s.toml:18:1") && Contains("not of 'file'"));
+}
+
 TEST_CASE("overrides change any key, and their errors name them", "[scene]") {
   const Settings s = parse_scene(good + "[[vesicle]]\nshape = \"sphere\"\n", "s.toml", ".",
                                  {"vesicle.order=9", "vesicle.1.order=7", "time.end=5", "numerics.upsampling=2",
