@@ -19,6 +19,16 @@ constexpr double pi = std::numbers::pi;
 /// Order of the smooth source grid: q ~ p^(3/2).
 int smooth_order(int p, int wanted) { return std::max(p + 1, wanted > 0 ? wanted : int(std::ceil(std::pow(p, 1.5)))); }
 
+Vec3 direction(const Basis& basis, Eigen::Index k) {
+  return unit_vector(basis.theta()[k % basis.latitudes()], basis.phi()[k / basis.latitudes()]);
+}
+
+double distance_to_box(const Vec3& x, const Vec3& low, const Vec3& high) {
+  return (low - x).cwiseMax(x - high).cwiseMax(0).norm();
+}
+
+}  // namespace
+
 Sources make_sources(const Basis& basis, const Coefficients& x) {
   const FirstDerivatives d = basis.first(x);
   Sources s;
@@ -39,24 +49,13 @@ Sources make_sources(const Basis& basis, const Coefficients& x) {
   return s;
 }
 
-Vec3 direction(const Basis& basis, Eigen::Index k) {
-  return unit_vector(basis.theta()[k % basis.latitudes()], basis.phi()[k / basis.latitudes()]);
+std::pair<Eigen::Index, double> nearest_source(const Sources& s, const Vec3& x) {
+  Eigen::Index k = 0;
+  const double square = ((s.points.col(0).array() - x[0]).square() + (s.points.col(1).array() - x[1]).square() +
+                         (s.points.col(2).array() - x[2]).square())
+                            .minCoeff(&k);
+  return {k, std::sqrt(square)};
 }
-
-double distance_to_box(const Vec3& x, const Vec3& low, const Vec3& high) {
-  return (low - x).cwiseMax(x - high).cwiseMax(0).norm();
-}
-
-/// Index of the source point nearest to x.
-Eigen::Index nearest_source(const Sources& s, const Vec3& x) {
-  Eigen::Index best = 0;
-  ((s.points.col(0).array() - x[0]).square() + (s.points.col(1).array() - x[1]).square() +
-   (s.points.col(2).array() - x[2]).square())
-      .minCoeff(&best);
-  return best;
-}
-
-}  // namespace
 
 Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positions, std::span<const Material> materials,
                              const InteractionOptions& options) {
@@ -95,8 +94,7 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
         continue;
       }
       if (options.near_rule && to_box < reach) {
-        const Eigen::Index source = nearest_source(s, x);
-        const double away = (s.points.row(source).transpose() - x).norm();
+        const auto [source, away] = nearest_source(s, x);
         if (away < (options.near_spacings + 1) * s.spacing[source]) {
           const NearestPoint nearest = nearest_point(positions[j], x, direction(*w.source_basis[j], source));
           if (nearest.inside) throw std::domain_error(fmt::format("vesicle {} crosses vesicle {}", i, j));
@@ -298,8 +296,7 @@ Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
       for (Eigen::Index k = 0; k < a.points.rows(); ++k) {
         const Vec3 x = a.points.row(k).transpose();
         if (distance_to_box(x, b.low, b.high) >= nearest) continue;
-        const Eigen::Index l = nearest_source(b, x);
-        const double d = (b.points.row(l).transpose() - x).norm();
+        const auto [l, d] = nearest_source(b, x);
         if (d < nearest) nearest = d, at_a = k, at_b = l;
       }
       Gap gap{nearest, j, i, false};

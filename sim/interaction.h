@@ -32,6 +32,11 @@ struct Sources {
   Vec3 low, high;           ///< bounding box
 };
 
+Sources make_sources(const Basis&, const Coefficients& position);
+
+/// Index of the source point nearest to x, and its distance.
+std::pair<Eigen::Index, double> nearest_source(const Sources&, const Vec3& x);
+
 /// Targets of vesicle i that see vesicle j by the smooth rule on the coarse or the fine source grid, and those that need
 /// rows, with the nearest point of j for each of these.
 struct PairPlan {
@@ -57,7 +62,8 @@ Interaction plan_interaction(Plans&, std::span<const Coefficients> positions, st
 std::vector<Coefficients> induced_velocity(const Interaction&, std::span<const Densities>);
 
 /// Optional short-range repulsion: traction strength exp(-gap/range) on the points of each vesicle that are near another,
-/// away from its nearest point. Force densities as coefficients of degree p; zero beyond the reach of the near rule.
+/// away from its nearest point. Force densities as coefficients of degree p; zero beyond the reach of the near rule (four
+/// spacings of its source grid), and without that rule.
 std::vector<Coefficients> repulsion(const Interaction&, double strength, double range);
 
 /// Sum of the two kernels over one surface at points (count x 3), added to `velocity`: S with 1/(8 pi), D with +3/(4 pi).

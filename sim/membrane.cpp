@@ -178,13 +178,16 @@ Coefficients tension_velocity(const Membrane& m, const Coefficients& sigma) {
 
 Solve solve_tension(const Membrane& m, const Coefficients& r, const Motion& guess, double tolerance) {
   const int p = m.order();
+  Coefficients known = r;
+  if (m.layers.dual.order >= 0)
+    known.values += (1 - m.material.viscosity_contrast) * m.layers.dual.apply(guess.velocity).values;
   const SpectralInverse inverse = spectral_inverse(m, 0);
   const GmresResult result = gmres(
       [&](const Vector& y) { return Vector(-divergence(m, tension_velocity(m, {p, y})).values.col(0)); },
-      [&](const Vector& y) { return Vector(precondition_tension(inverse, {p, y}).values.col(0)); }, divergence(m, r).values.col(0),
+      [&](const Vector& y) { return Vector(precondition_tension(inverse, {p, y}).values.col(0)); }, divergence(m, known).values.col(0),
       packed(guess).tail(coefficient_count(p)), tolerance, most_iterations);
   const Coefficients sigma{p, result.solution};
-  const Coefficients u{p, (r.values + tension_velocity(m, sigma).values) / m.material.alpha()};
+  const Coefficients u{p, (known.values + tension_velocity(m, sigma).values) / m.material.alpha()};
   return {{u, sigma}, result.iterations, result.residual, result.converged};
 }
 

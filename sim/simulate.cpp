@@ -140,8 +140,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
       records.push_back(step.record);
       if (observer.on_step) observer.on_step(d, step.record);
       if (every_step || d.time == target) save();
-    } catch (const std::exception& error) {
-      if (dynamic_cast<const StepFailure*>(&error) == nullptr) throw;
+    } catch (const StepFailure& error) {
       outcome.end = SimulationEnd::failed;
       outcome.reason = fmt::format("t = {:.6g}: {}", d.time, error.what());
       file->note("stopped at " + outcome.reason);

@@ -102,7 +102,7 @@ Advance bdf2(const Setting& s, const Dynamics& d, double dt) {
   return implicit_step(s, d, frozen, behind, dt * (1 + r) / (1 + 2 * r), d.time + dt, motions(d));
 }
 
-/// The three schemes that solve vesicle by vesicle: the bending and tension forces of the others are those of x_n, sigma_n.
+/// The three schemes that solve vesicle by vesicle: what the others do is that of x_n, sigma_n, u_n.
 Advance block_scheme(const Setting& s, const Dynamics& d, double dt,
                      Solve (*solve_self)(const Membrane&, double dt, const Coefficients& r, const Motion&, double)) {
   const auto x = positions(d);
@@ -112,7 +112,7 @@ Advance block_scheme(const Setting& s, const Dynamics& d, double dt,
     std::vector<Coefficients> tension;
     for (std::size_t k = 0; k < x.size(); ++k)
       tension.push_back(implicit_force(suspension.membranes[k], 0, d.vesicles[k].motion));
-    const std::vector<Coefficients> others = interaction_of(suspension, tension);
+    const std::vector<Coefficients> others = interaction_of(suspension, tension, motions(d));
     for (std::size_t k = 0; k < x.size(); ++k) r[k].values += others[k].values;
   }
   Advance a;
@@ -326,7 +326,7 @@ Step take_step(const Setting& s, const Dynamics& before, double dt) {
   return step;
 }
 
-State evaluate(const Setting& s, const Dynamics& d) {
+State evaluate(const Setting& s, const Dynamics& d) try {
   const auto x = positions(d);
   const Suspension suspension = freeze(s, d, x);
   const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity);
@@ -346,6 +346,8 @@ State evaluate(const Setting& s, const Dynamics& d) {
     state.vesicles.push_back(std::move(out));
   }
   return state;
+} catch (const std::domain_error& error) {
+  throw StepFailure(error.what());
 }
 
 void mark_saved(Dynamics& d, const State& state) {

@@ -27,9 +27,15 @@ Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, 
   return s;
 }
 
-std::vector<Coefficients> interaction_of(const Suspension& s, std::span<const Coefficients> forces) {
+std::vector<Coefficients> interaction_of(const Suspension& s, std::span<const Coefficients> forces,
+                                         std::span<const Motion> motions) {
   std::vector<Densities> densities;
-  for (const Coefficients& f : forces) densities.push_back({f, {f.order, Matrix::Zero(f.values.rows(), 3)}});
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const Coefficients& f = forces[k];
+    densities.push_back({f, {f.order, Matrix::Zero(f.values.rows(), 3)}});
+    if (!motions.empty())
+      densities[k].dual.values = (1 - s.membranes[k].material.viscosity_contrast) * motions[k].velocity.values;
+  }
   return induced_velocity(s.interaction, densities);
 }
 

@@ -27,9 +27,10 @@ Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const 
 std::vector<Coefficients> suspension_forcing(const Suspension&, std::span<const FlowParameters>, double time,
                                              const Vec3& gravity, std::span<const Coefficients> displacements = {});
 
-/// Velocity that known forces (per vesicle, degree p) on all vesicles induce on the others: the lagged interaction of the
-/// block schemes.
-std::vector<Coefficients> interaction_of(const Suspension&, std::span<const Coefficients> forces);
+/// Velocity that known forces (per vesicle, degree p) on all vesicles induce on the others, with the double layer of known
+/// motions if they are given: the lagged interaction of the block schemes.
+std::vector<Coefficients> interaction_of(const Suspension&, std::span<const Coefficients> forces,
+                                         std::span<const Motion> motions = {});
 
 enum class Preconditioner {
   spectral,  ///< the corrected one of section 3.5
