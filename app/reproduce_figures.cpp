@@ -84,7 +84,7 @@ Report reproduce_aliasing(const Effort&) {
                       const render::Theme theme = render::find_theme("paper");
                       const render::Pen pen{cairo, font, theme};
                       for (std::size_t k = 0; k < aliases.size(); ++k) {
-                        const render::Panel panel{{-1, 1}, {-2.6, 2.6}, 50 + 232 * static_cast<double>(k), 30, 216, 160};
+                        const render::Panel panel{{-1, 1}, {-2.6, 2.6}, 50 + 240 * static_cast<double>(k), 30, 204, 160};
                         constexpr render::Colour grey{0.62, 0.66, 0.72};
                         render::draw_polyline(pen, panel, fine, aliases[k].values, {grey, 0.6});
                         render::draw_polyline(pen, panel, fine, low, {render::curve_colour(0), 1.15});

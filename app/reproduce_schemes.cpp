@@ -375,11 +375,12 @@ Report reproduce_block_error(const Effort& effort) {
   report.setting = {"Two prolates, ν = 0.85, area 4π, long axes along x, one above the other along z (the paper's configuration is "
                     "only pictured), in the shear flow u = z e_x, κ_b = 0.01, χΔt = 0.21.",
                     fmt::format("p = {}. y = (x, σ): y* solves the coupled system (40) to 1e-11, y⁺ is one block Jacobi iteration "
-                                "from the present x_n and the tension that solves (3) there.", p)};
+                                "from the present x_n, at rest, and the tension that solves (3) there.", p)};
   TextTable table{"Relative error ‖y⁺ − y*‖/‖y*‖ of the coefficients.", {"gap / R_0"}, {}};
   for (const double contrast : contrasts) table.columns.push_back(fmt::format("λ = {}", contrast));
   sim::Plans plans;
   std::vector<std::vector<double>> errors(contrasts.size());
+  double lagged = 0;
   const double half = sim::spheroid_axes(0.85, true)[1];
   for (const double gap : gaps) {
     std::vector<std::string> cells{fmt::format("{:g}", gap)};
@@ -398,19 +399,26 @@ Report reproduce_block_error(const Effort& effort) {
       const auto advance = [&](const char* scheme) {
         return sim::find_row(sim::scheme_catalogue(), scheme)->function(setting, d, paper_step);
       };
-      const sim::Advance exact = advance("globally-implicit"), block = advance("block-implicit");
-      double difference = 0, size = 0;
-      for (std::size_t k = 0; k < 2; ++k) {
-        difference += (block.positions[k].values - exact.positions[k].values).squaredNorm() +
-                      (block.motions[k].tension.values - exact.motions[k].tension.values).squaredNorm();
-        size += exact.positions[k].values.squaredNorm() + exact.motions[k].tension.values.squaredNorm();
-      }
-      errors[c].push_back(std::sqrt(difference / size));
+      const sim::Advance exact = advance("globally-implicit");
+      const auto error_of = [&](const sim::Advance& block) {
+        double difference = 0, size = 0;
+        for (std::size_t k = 0; k < 2; ++k) {
+          difference += (block.positions[k].values - exact.positions[k].values).squaredNorm() +
+                        (block.motions[k].tension.values - exact.motions[k].tension.values).squaredNorm();
+          size += exact.positions[k].values.squaredNorm() + exact.motions[k].tension.values.squaredNorm();
+        }
+        return std::sqrt(difference / size);
+      };
+      lagged = std::max(lagged, error_of(advance("block-implicit")));
+      for (sim::VesicleDynamics& v : d.vesicles) v.motion.velocity.values.setZero();
+      errors[c].push_back(error_of(advance("block-implicit")));
       cells.push_back(scientific(errors[c].back(), 3));
     }
     table.rows.push_back(cells);
   }
   report.tables.push_back(table);
+  report.findings.push_back(fmt::format("With the double layer of the velocities that solve (3) there, as our block-implicit scheme "
+                                        "takes it from the step before, no error above is larger than {}.", scientific(lagged)));
 
   std::vector<double> all;
   for (const auto& e : errors) all.insert(all.end(), e.begin(), e.end());
