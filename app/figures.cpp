@@ -260,7 +260,7 @@ void add_flow(render::FigureInput& input, const FigureSource& source) {
   const TimeUnit unit = time_unit(scene);
   input.flow = flow_picture(plans, scene, input.states.front(),
                             flow_request(plans, input.states.front(), input.parameters, input.length));
-  const std::string speed = input.parameters.frame == "vesicle" ? "|u − U|" : "|u|";
+  const std::string speed = input.parameters.frame == "vesicle" ? "in-plane |u − U|" : "in-plane |u|";
   if (unit.symbol != "t") {
     input.flow.speed_factor = 1 / (unit.factor * input.length);
     input.flow.speed_label = speed + " / γ̇R_{0}";
