@@ -116,6 +116,7 @@ Comparison compare_with(const CompareRequest& request, const Pair& pair, const r
     }
     result.difference = render::difference(expected, actual, request.rule,
                                            ignored_pixels(request, pair.baseline, actual.width, actual.height));
+    if (result.difference.compared == 0) throw std::runtime_error("the mask leaves nothing to compare");
     const std::vector<std::string> objections = render::objections(result.difference, request.rule);
     if (!objections.empty()) result.verdict = Verdict::different;
     result.detail = fmt::format("{}", fmt::join(objections, ", "));

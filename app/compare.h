@@ -31,7 +31,7 @@ inline constexpr VerdictWords verdict_words[] = {
     {Verdict::same, "same", "the rule is kept", 0},
     {Verdict::different, "different", "the rule is broken", 1},
     {Verdict::size, "size", "width or height differ", 2},
-    {Verdict::unreadable, "unreadable", "a file is damaged or cannot be opened", 2},
+    {Verdict::unreadable, "unreadable", "a file is damaged or cannot be opened, or the mask leaves nothing to compare", 2},
     {Verdict::missing, "missing", "on the expected side only", 2},
     {Verdict::fresh, "new", "on the actual side only", 2},
 };

@@ -114,6 +114,22 @@ TEST_CASE("masks and rectangles leave regions out", "[compare]") {
   CHECK_THAT(desk.compare().out, Contains("unreadable") && Contains("is 10 x 10, the picture 40 x 30"));
 }
 
+TEST_CASE("a comparison of nothing is not a comparison", "[compare]") {
+  const Desk desk;
+  render::Image all(40, 30, 3);
+  all.pixels.assign(all.pixels.size(), 255);
+  desk.put("all.png", all);
+  Outcome o = desk.compare({"--ignore", "0,0,40x30"});
+  CHECK(o.status == 2);
+  CHECK_THAT(o.out, Contains("unreadable a.png  the mask leaves nothing to compare") && Contains("1 picture: 1 unreadable"));
+  CHECK(desk.compare({"--mask", desk.file("all.png")}).status == 2);
+  CHECK(desk.compare({"--ignore", "0,0,40x29"}).status == 0);
+  desk.put("expected/a.mask.png", all);
+  CHECK(desk.compare().status == 2);
+  CHECK(desk.compare({"--preset", "perceptual"}).status == 2);
+  CHECK(desk.compare({"--update"}).status == 2);
+}
+
 TEST_CASE("a picture may have several accepted baselines", "[compare]") {
   const Desk desk;
   desk.put("actual/a.png", with_square(20, 20));
