@@ -30,22 +30,27 @@ struct OptionRow {
   void (*add)(CLI::App&, Options&);
 };
 
+/// Is the whole word one number?
+template <class Number>
+bool read_number(std::string_view word, Number& value) {
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+/// "A/B" or "AxB", whole numbers.
+bool read_two(std::string_view text, char between, int& first, int& second) {
+  const std::size_t at = text.find(between);
+  return at != std::string_view::npos && read_number(text.substr(0, at), first) && read_number(text.substr(at + 1), second);
+}
+
 void parse_shard(Options& options, const std::string& text) {
-  const std::size_t slash = text.find('/');
-  const char *begin = text.data(), *end = begin + text.size();
-  if (slash != std::string::npos && std::from_chars(begin, begin + slash, options.shard).ptr == begin + slash &&
-      std::from_chars(begin + slash + 1, end, options.shards).ptr == end && options.shards >= 1 && options.shard >= 0 &&
-      options.shard < options.shards)
-    return;
+  if (read_two(text, '/', options.shard, options.shards) && 0 <= options.shard && options.shard < options.shards) return;
   throw CLI::ValidationError("--shard", fmt::format("'{}' is not i/n with 0 <= i < n", text));
 }
 
 void parse_size(Options& options, const std::string& text) {
   int width = 0, height = 0;
-  const std::size_t cross = text.find('x');
-  const char *begin = text.data(), *end = begin + text.size();
-  if (cross == std::string::npos || std::from_chars(begin, begin + cross, width).ptr != begin + cross ||
-      std::from_chars(begin + cross + 1, end, height).ptr != end)
+  if (!read_two(text, 'x', width, height))
     throw CLI::ValidationError("--size", fmt::format("'{}' is not WIDTHxHEIGHT, such as 1920x1080", text));
   options.set.push_back(fmt::format("view.size=[{}, {}]", width, height));
 }
@@ -56,10 +61,7 @@ void parse_figure_size(Options& options, const std::string& text) {
   const std::string numbers = text.substr(0, text.size() - unit.size());
   const std::size_t cross = numbers.find('x');
   double width = 0, height = 0;
-  const auto read = [](std::string_view word, double& value) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size() && value > 0;
-  };
+  const auto read = [](std::string_view word, double& value) { return read_number(word, value) && value > 0; };
   const bool known = unit == "mm" || unit == "px";
   if (!known || !read(std::string_view(numbers).substr(0, cross), width) ||
       (cross != std::string::npos && !read(std::string_view(numbers).substr(cross + 1), height)))

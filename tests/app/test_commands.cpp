@@ -306,6 +306,23 @@ TEST_CASE("info, list, --version and mistakes on the command line answer", "[com
   CHECK_THAT(desk({"info", desk.file("t.h5")}).out, Contains("states     6") && Contains("area_error"));
 }
 
+TEST_CASE("a shard or a size of half a number, or of one beyond all bounds, is refused", "[commands]") {
+  const Desk desk;
+  for (const std::string text : {"0/", "/3", "99999999999/4", "0/99999999999", "4/4", "-1/4", "1/2/3", " 0/2", "0/2 ", "", "/"}) {
+    const Outcome o = desk({"render", desk.file("none.h5"), "--shard", text});
+    INFO(text << ": " << o.err);
+    CHECK(o.status != 0);
+    CHECK_THAT(o.err, Contains("'" + text + "' is not i/n with 0 <= i < n"));
+  }
+  CHECK_THAT(desk({"render", desk.file("none.h5"), "--shard", "3/4"}).err, Contains("none.h5"));
+  for (const std::string text : {"64x", "x48", "99999999999x48", "64x48x2", "64", "64 x48"}) {
+    const Outcome o = desk({"render", desk.file("none.h5"), "--size", text});
+    INFO(text << ": " << o.err);
+    CHECK(o.status != 0);
+    CHECK_THAT(o.err, Contains("'" + text + "' is not WIDTHxHEIGHT"));
+  }
+}
+
 TEST_CASE("without ffmpeg, or with a broken one, the frames are kept and a sentence says why there is no movie", "[commands]") {
   const Desk desk;
   fs::create_directory(desk / "bin");
