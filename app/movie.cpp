@@ -1,14 +1,16 @@
 #include "movie.h"
 
+#include "child.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -39,65 +41,40 @@ void remove_drafts(const std::filesystem::path& path) {
   }
 }
 
-/// In the child, between fork and exec: nothing but system calls. An ffmpeg without its parent would go on with a movie that
-/// nobody waits for, so it dies with it.
-[[noreturn]] void become_ffmpeg(char* const* argv, int input, int trouble, pid_t parent) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(127);
-  ::setpgid(0, 0);  // Ctrl-C is for us: we end the movie in order
-  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(number, SIG_DFL);
-  ::dup2(input, STDIN_FILENO);
-  ::execvp(argv[0], argv);
-  const int reason = errno;
-  [[maybe_unused]] const ssize_t told = ::write(trouble, &reason, sizeof reason);
-  ::_exit(127);
-}
-
-int wait_for(pid_t child) {
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
-  return status;
-}
-
 }  // namespace
 
 MovieEncoder::MovieEncoder(const MovieFormat& format, const std::filesystem::path& path, int width, int height,
                            double frame_rate)
     : path_(path), draft_(fmt::format("{}.{}.tmp", path.string(), ::getpid())), width_(width), height_(height) {
   remove_drafts(path);
-  int frames[2], trouble[2];  // its input, and a line that closes when ffmpeg has been started
+  int frames[2];  // its input
   if (pipe2(frames, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
-  if (pipe2(trouble, O_CLOEXEC) != 0) {
-    const int reason = errno;
-    for (const int end : frames) ::close(end);
-    throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(reason)));
+  int reason = 0;
+  try {
+    // An ffmpeg without its parent would go on with a movie that nobody waits for. Ctrl-C is for us: we end the movie in order.
+    child_ = start_child({.file = "ffmpeg",
+                          .words = arguments(format, std::filesystem::absolute(draft_), width, height, frame_rate),
+                          .environment = {},
+                          .input = frames[0],
+                          .takes_ctrl_c = false,
+                          .last_signal = SIGKILL});
+  } catch (const std::system_error& error) {
+    reason = error.code().value();
   }
-  std::vector<std::string> words = arguments(format, std::filesystem::absolute(draft_), width, height, frame_rate);
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const pid_t parent = ::getpid();
-  child_ = ::fork();
-  if (child_ == 0) become_ffmpeg(argv.data(), frames[0], trouble[1], parent);
-  const int reason = errno;
   ::close(frames[0]);
-  ::close(trouble[1]);
   pipe_ = frames[1];
-  int error = child_ < 0 ? reason : 0;
-  if (child_ > 0 && ::read(trouble[0], &error, sizeof error) > 0) wait_for(std::exchange(child_, -1));
-  ::close(trouble[0]);
-  if (error == 0) return;
+  if (reason == 0) return;
   ::close(std::exchange(pipe_, -1));
-  if (error == ENOENT)
+  if (reason == ENOENT)
     throw FfmpegMissing("ffmpeg is not installed, so there is no movie (Debian: apt-get install ffmpeg)");
-  throw std::runtime_error(fmt::format("ffmpeg cannot be started: {}", std::strerror(error)));
+  throw std::runtime_error(fmt::format("ffmpeg cannot be started: {}", std::strerror(reason)));
 }
 
 MovieEncoder::~MovieEncoder() {
   if (pipe_ >= 0) ::close(pipe_);
   if (child_ < 0) return;
   ::kill(child_, SIGKILL);
-  wait_for(child_);
+  wait_for_child(child_);
   std::error_code ignored;
   std::filesystem::remove(draft_, ignored);
 }
@@ -118,7 +95,7 @@ void MovieEncoder::add(const render::Image& image) {
 
 void MovieEncoder::finish() {
   ::close(std::exchange(pipe_, -1));
-  const int status = wait_for(std::exchange(child_, -1));
+  const int status = wait_for_child(std::exchange(child_, -1));
   std::error_code error;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
     std::filesystem::rename(draft_, path_, error);

@@ -1,17 +1,17 @@
 #include "workers.h"
 
+#include "child.h"
 #include "interrupt.h"
 #include "progress.h"
 
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
-#include <cstring>
+#include <csignal>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -31,12 +31,40 @@ std::vector<std::string> words_of(const Options& options, const std::filesystem:
   return words;
 }
 
-std::vector<char*> pointers(std::vector<std::string>& words) {
-  std::vector<char*> all;
-  for (std::string& word : words) all.push_back(word.data());
-  all.push_back(nullptr);
-  return all;
-}
+/// The processes at work. None is left when they go out of scope: they finish the frame under way, and are waited for.
+class Children {
+ public:
+  Children() = default;
+  Children(const Children&) = delete;
+  Children& operator=(const Children&) = delete;
+  ~Children() {
+    stop();
+    for (const pid_t child : running_) wait_for_child(child);
+  }
+  void add(pid_t child) { running_.push_back(child); }
+  std::size_t running() const { return running_.size(); }
+  /// Asks them for an end, once.
+  void stop() {
+    if (!stopped_)
+      for (const pid_t child : running_) ::kill(child, SIGTERM);
+    stopped_ = true;
+  }
+  /// Forgets those that have ended; false: one of them failed.
+  bool collect() {
+    bool good = true;
+    std::erase_if(running_, [&](pid_t child) {
+      int status = 0;
+      if (::waitpid(child, &status, WNOHANG) != child) return false;
+      good = good && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+      return true;
+    });
+    return good;
+  }
+
+ private:
+  std::vector<pid_t> running_;
+  bool stopped_ = false;
+};
 
 }  // namespace
 
@@ -45,28 +73,23 @@ bool draw_in_processes(const Options& options, const std::filesystem::path& fold
   for (char** entry = environ; *entry; ++entry)
     if (!std::string_view(*entry).starts_with("LP_NUM_THREADS=")) environment.emplace_back(*entry);
   environment.emplace_back("LP_NUM_THREADS=0");  // each draws in its own thread
-  std::vector<char*> variables = pointers(environment);
-  std::vector<pid_t> children;
-  for (int shard = 0; shard < options.jobs; ++shard) {
-    std::vector<std::string> words = words_of(options, folder, shard);
-    std::vector<char*> arguments = pointers(words);
-    pid_t child = -1;
-    if (const int error = posix_spawn(&child, "/proc/self/exe", nullptr, nullptr, arguments.data(), variables.data()))
-      throw std::runtime_error(fmt::format("cannot start a process to draw frames: {}", std::strerror(error)));
-    children.push_back(child);
-  }
+  Children children;
+  for (int shard = 0; shard < options.jobs; ++shard) try {
+      children.add(start_child({.file = "/proc/self/exe",
+                                .words = words_of(options, folder, shard),
+                                .environment = environment,
+                                .input = -1,
+                                .takes_ctrl_c = true,
+                                .last_signal = SIGTERM}));
+    } catch (const std::system_error& error) {
+      throw std::runtime_error(fmt::format("cannot start a process to draw frames: {}", error.code().message()));
+    }
   Progress progress("rendering", options.quiet);
   bool failed = false;
-  for (std::size_t left = children.size(); left > 0;) {
-    for (pid_t& child : children) {
-      int status = 0;
-      if (child < 0 || waitpid(child, &status, WNOHANG) != child) continue;
-      child = -1;
-      --left;
-      failed = failed || !WIFEXITED(status) || WEXITSTATUS(status) != 0;
-    }
-    progress.show(1 - static_cast<double>(left) / static_cast<double>(children.size()),
-                  fmt::format("{} processes", children.size()));
+  while (children.running() > 0) {
+    if (interrupted()) children.stop();
+    failed = !children.collect() || failed;
+    progress.show(1 - static_cast<double>(children.running()) / options.jobs, fmt::format("{} processes", options.jobs));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   if (interrupted()) return false;

@@ -6,7 +6,8 @@
 namespace app {
 
 /// Starts `render` once for each of options.jobs shards and waits for all. Throws std::runtime_error when one fails, with its
-/// own sentence already on standard error. Returns false after an interruption.
+/// own sentence already on standard error. Returns false after an interruption, which is passed on. No process is left in either
+/// case, nor when this one is killed.
 bool draw_in_processes(const Options&, const std::filesystem::path& folder);
 
 }  // namespace app

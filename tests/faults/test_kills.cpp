@@ -46,6 +46,18 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
   return all;
 }
 
+/// Living processes with this word on their command lines.
+int processes_naming(const std::string& word) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") == std::string::npos &&
+        support::read_file(entry.path() / "cmdline").find(word) != std::string::npos)
+      ++count;
+  }
+  return count;
+}
+
 }  // namespace
 
 TEST_CASE("a simulation killed fifty times loses no state and ends with the same bytes", "[faults]") {
@@ -74,6 +86,27 @@ TEST_CASE("a simulation killed fifty times loses no state and ends with the same
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "-q"}).status == 0);
   CHECK(support::read_file(file) == whole);
   CHECK(desk.names() == std::set<std::string>{"t.h5", "whole.h5"});
+}
+
+TEST_CASE("processes that draw shards end with the one that started them, asked or killed", "[faults]") {
+  const Desk desk(scene("1"));
+  constexpr std::size_t frames = 4001;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  for (const int number : {SIGTERM, SIGKILL}) {
+    const std::string out = desk.file(number == SIGTERM ? "asked" : "killed");
+    const pid_t child = support::start(
+        desk, {TANKTREAD_PROGRAM, "render", desk.file("t.h5"), "-o", out, "-q", "-j", "2", "--set", "movie.time_per_frame=0.00025"});
+    const bool drawing = support::wait_for(out + "/frames/000002.png") && support::wait_for(out + "/frames/000003.png");
+    kill(child, number);
+    CHECK(support::finish(desk, child).status == (number == SIGTERM ? 130 : -SIGKILL));
+    REQUIRE(drawing);
+    // One that was killed cannot wait for its children; a minute is beyond all doubt.
+    for (int k = 0; number == SIGKILL && k < 6000 && processes_naming(out) > 0; ++k) usleep(10000);
+    CHECK(processes_naming(out) == 0);
+    std::size_t drawn = 0;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(out + "/frames")) ++drawn;
+    CHECK(drawn < frames);
+  }
 }
 
 TEST_CASE("a rendering killed fifty times has no torn, missing or double frame, and the same movie in the end", "[faults]") {
