@@ -20,12 +20,19 @@ namespace app {
 
 namespace fs = std::filesystem;
 
+std::int64_t frame_count(double end, double time_per_frame) {
+  const double frames = std::floor(end / time_per_frame * (1 + 1e-12)) + 1;
+  if (!(frames <= most_frames + 1))
+    throw std::invalid_argument(fmt::format("{:.3g} frames are too many; movie.time_per_frame must be longer", frames));
+  return static_cast<std::int64_t>(frames);
+}
+
 std::vector<double> frame_times(const sim::TrajectoryReader& trajectory, const render::MovieParameters& movie) {
   std::vector<double> times;
   const std::int64_t states = trajectory.count();
   if (movie.time_per_frame > 0) {
     const double end = trajectory.time(states - 1);
-    const auto frames = static_cast<std::int64_t>(std::floor(end / movie.time_per_frame * (1 + 1e-12))) + 1;
+    const std::int64_t frames = frame_count(end, movie.time_per_frame);
     for (std::int64_t f = 0; f < frames; ++f)
       times.push_back(std::min(end, static_cast<double>(f) * movie.time_per_frame));
   } else {

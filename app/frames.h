@@ -6,6 +6,9 @@
 
 namespace app {
 
+/// Frames from time 0 to `end`. Throws std::invalid_argument when there are more than most_frames.
+std::int64_t frame_count(double end, double time_per_frame);
+
 /// Instants of the frames: those of the saved states, or every movie.time_per_frame.
 std::vector<double> frame_times(const sim::TrajectoryReader&, const render::MovieParameters&);
 

@@ -97,8 +97,9 @@ struct Reader {
                                                    "output folder ('tanktread figure -o' writes anywhere)", p.out));
   }
   void check(const toml::table& table, sim::TimeParameters& p) const {
-    if (p.end / p.step > 1e9)
-      fail_at(source_of(table, "step"), fmt::format("{:.3g} steps are too many; 'step' must be longer", p.end / p.step));
+    for (const auto& [key, length] : {std::pair{"step", p.step}, std::pair{"save_every", p.save_every.value_or(p.step)}})
+      if (const double steps = p.end / length; steps > most_steps)
+        fail_at(source_of(table, key), fmt::format("{:.3g} steps are too many; '{}' must be longer", steps, key));
   }
   void check(const toml::table& table, sim::PlacementParameters& p) const {
     if (p.kind != "file") return;
@@ -250,6 +251,9 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
   const Reader reader{root, name, folder, use};
   visit_sections(settings, reader);
   if (use == SceneUse::simulate) reader.check_together(settings.scene);
+  if (const double part = settings.movie.time_per_frame, frames = settings.scene.time.end / part; part > 0 && frames > most_frames)
+    fail_at(source_of(*root["movie"].as_table(), "time_per_frame"),
+            fmt::format("{:.3g} frames are too many; 'time_per_frame' must be longer", frames));
   if (use == SceneUse::simulate && !settings.scene.placements.empty()) try {
       settings.scene = sim::placed(std::move(settings.scene));
     } catch (const std::invalid_argument& error) {

@@ -25,6 +25,9 @@ void visit_sections(S& settings, V&& v) {
   v(sim::Section{"figure", "one figure a table", false}, settings.figures);
 }
 
+/// Of one run, one movie. More would take years.
+inline constexpr double most_steps = 1e9, most_frames = 1e7;
+
 /// The key whose word decides which other keys of a table are read, e.g. `kind` of [flow].
 struct Selector {
   std::string_view section, key, catalogue;

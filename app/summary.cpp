@@ -1,5 +1,6 @@
 #include "summary.h"
 
+#include "frames.h"
 #include "scene_text.h"
 
 #include "render/image.h"
@@ -58,9 +59,7 @@ std::string scene_summary(const Settings& settings) {
   const double every = scene.time.save_every.value_or(scene.time.step);
   const std::int64_t states = intervals(scene.time.end, every) + 1;
   const std::int64_t frames =
-      settings.movie.time_per_frame > 0
-          ? static_cast<std::int64_t>(std::floor(scene.time.end / settings.movie.time_per_frame * (1 + 1e-12))) + 1
-          : states;
+      settings.movie.time_per_frame > 0 ? frame_count(scene.time.end, settings.movie.time_per_frame) : states;
   std::string text = fmt::format("# {}\n", scene.title.empty() ? "(no title)" : scene.title);
   text += fmt::format("# flow {}; time 0 to {}, about {}, {}\n", flows, scene.time.end,
                       counted(intervals(scene.time.end, std::min(every, scene.time.step)), "step"),

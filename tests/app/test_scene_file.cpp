@@ -1,4 +1,5 @@
 // Scene files: what is right is read, what is wrong is told with file, line, column and the nearest good word.
+#include "app/frames.h"
 #include "app/scene_file.h"
 #include "app/scene_text.h"
 #include "tests/support/temporary_folder.h"
@@ -92,6 +93,17 @@ TEST_CASE("values out of range are told with line, column and range", "[scene]")
   CHECK(error_of(replaced("step = 0.1", "step = 0")) == "s.toml:9:8: 'step' must be above 0, not 0");
   CHECK_THAT(error_of(replaced("step = 0.1", "step = nan")), Contains("s.toml:9:8"));
   CHECK_THAT(error_of(replaced("rate = 1.0", "rate = inf")), Contains("s.toml:5:8") && Contains("finite"));
+}
+
+TEST_CASE("more steps or frames than anybody can wait for are refused, whichever key asks for them", "[scene]") {
+  CHECK(error_of(replaced("step = 0.1", "step = 1e-10")) == "s.toml:9:8: 2e+10 steps are too many; 'step' must be longer");
+  CHECK(error_of(replaced("step = 0.1", "save_every = 1e-10")) == "s.toml:9:14: 2e+10 steps are too many; 'save_every' must be longer");
+  CHECK(error_of(good + "[movie]\ntime_per_frame = 1e-300\n") ==
+        "s.toml:16:18: 2e+300 frames are too many; 'time_per_frame' must be longer");
+  CHECK_THAT(error_of(good, {"movie.time_per_frame=1e-300"}), Contains("frames are too many"));
+  CHECK(error_of(good + "[movie]\ntime_per_frame = 2e-7\n").empty());
+  CHECK(app::frame_count(2, 2e-7) == 10000001);
+  CHECK_THAT(message_of([] { app::frame_count(2, 1e-300); }), Contains("movie.time_per_frame must be longer"));
 }
 
 TEST_CASE("values of the wrong type are told with line and column", "[scene]") {
