@@ -70,6 +70,27 @@ def reference(program):
     return [f"docs/reference.md:{line} is not what the program declares; renew it with: {command} > docs/reference.md"]
 
 
+def commands_in(text):
+    """(line, command) of every call of the program in a page: in fenced blocks, and between backticks in a line."""
+    found = []
+    fenced = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.lstrip().startswith("```"):
+            fenced = not fenced
+            continue
+        for code in [line] if fenced else re.findall(r"`([^`]+)`", line):
+            found += [(number, word) for word in re.findall(r"(?:^|[\s/;|&(])tanktread(?:\.sh)? ([a-z][\w-]*)", code)]
+    return found
+
+
+def itself():
+    """The checks of pages find what they are for."""
+    page = "Call `tanktread rum x`, not tanktread rom.\n\n```\n$ ./tanktread.sh rem a\nbuild/release/tanktread run b | tanktread ram\n```\n`tanktread run`\n"
+    expected = [(1, "rum"), (4, "rem"), (5, "run"), (5, "ram"), (7, "run")]
+    found = commands_in(page)
+    return [] if found == expected else [f"commands of a page: {found}, not {expected}"]
+
+
 def pages(program):
     """Every command line in README.md and docs/ names a command that exists and scenes that are there."""
     help_text = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
@@ -81,11 +102,9 @@ def pages(program):
         if not path.exists():
             findings.append(f"{name} is missing")
             continue
+        findings += [f"{name}:{number} names the command '{word}', which does not exist"
+                     for number, word in commands_in(path.read_text()) if word not in commands]
         for number, line in enumerate(path.read_text().splitlines(), 1):
-            for word in re.findall(r"(?:\./tanktread\.sh|(?:^|[\s`/])tanktread) ([a-z]+)(?=[ `]|$)", line):
-                if line.lstrip("$ `").startswith(("./tanktread.sh", "tanktread", "build/release/tanktread")) or "`" in line:
-                    if word not in commands and re.search(r"`[^`]*tanktread(\.sh)? " + word, line):
-                        findings.append(f"{name}:{number} names the command '{word}', which does not exist")
             for scene in re.findall(r"\bscenes/[\w.-]+\.toml", line):
                 if not (ROOT / scene).exists():
                     findings.append(f"{name}:{number} names {scene}, which does not exist")
@@ -104,7 +123,7 @@ def pages(program):
 
 
 def main():
-    checks = {"layering": layering, "reference": reference, "pages": pages}
+    checks = {"layering": layering, "reference": reference, "pages": pages, "itself": itself}
     findings = checks[sys.argv[1]](*sys.argv[2:])
     for finding in findings:
         print(finding)
