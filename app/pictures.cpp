@@ -117,7 +117,7 @@ render::FlowLines lines_of(sim::Plans& plans, const ViewPanel& p, const sim::Sta
 render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render::Camera& camera) {
   render::Inset inset;
   render::CutPlane plane;
-  plane.origin = sim::Vec3(0, render::summarize(state).centroid.y, 0);
+  plane.origin = sim::Vec3(0, camera.target.y, 0);
   constexpr double largest = 0.85;  // of the box's half height in that of the picture
   inset.centre = {camera.target.x, camera.target.z};
   inset.half_height = camera.half_height * largest;

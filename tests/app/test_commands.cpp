@@ -1,4 +1,5 @@
 // The program as a user meets it: exit statuses, messages, and what is left on the disk.
+#include "render/image.h"
 #include "sim/trajectory.h"
 #include "tests/support/program.h"
 
@@ -409,6 +410,29 @@ TEST_CASE("a still is chosen by time, in any style, field and view", "[commands]
              Contains("two vesicles"));
   CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.field=tention"}).err, Contains("did you mean 'tension'?"));
   CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.eye=[0, 0.1, 0]"}).err, Contains("inside vesicle 0"));
+}
+
+TEST_CASE("the inset cuts what the camera follows or aims at, not the middle between the vesicles", "[commands]") {
+  // Between these two, in the plane of their common centroid, there is only fluid.
+  std::string text = scene;
+  text.replace(text.find("order = 6\n"), 10, "order = 6\ncenter = [0, -3, 0]\n[[vesicle]]\nshape = \"sphere\"\norder = 6\ncenter = [0, 3, 0]\n");
+  const Desk desk(text + "inset = true\n");
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q", "--steps", "0"}).status == 0);
+  const auto coloured = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"render", desk.file("t.h5"), "--time", "0", "-o", desk.file("still.png"), "--size", "320x240"});
+    const Outcome outcome = desk(words);
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const render::Image image = render::read_png(desk / "still.png").image;
+    int count = 0;
+    for (int y = 10; y < 50; ++y)  // within the box
+      for (int x = 255; x < 300; ++x) count += image.at(x, y)[2] > image.at(x, y)[0] + 20 || image.at(x, y)[0] > image.at(x, y)[2] + 20;
+    return count;
+  };
+  CHECK(coloured({"--set", "view.target=[0, 0, 0]"}) == 0);
+  CHECK(coloured({"--set", "view.target=[0, 3, 0]"}) > 100);
+  CHECK(coloured({"--set", "view.follow=vesicle", "--set", "view.follow_vesicle=1"}) > 100);
+  CHECK(coloured({"--set", "view.follow=vesicle", "--set", "view.follow_vesicle=0"}) > 100);
 }
 
 TEST_CASE("two trajectories stand side by side, the shorter one at rest at its end", "[commands]") {
