@@ -38,7 +38,7 @@ void print_catalogue() {
 }  // namespace
 
 void stop_if_interrupted() {
-  if (interrupted()) throw Interrupted();
+  if (interrupted()) throw Interrupted{};
 }
 
 int reproduce(const Options& options) {
@@ -69,9 +69,10 @@ int reproduce(const Options& options) {
       fmt::print("{}\n", plain_text(report));
       for (const std::filesystem::path& file : files) fmt::print("{}\n", file.string());
       fmt::print("\n");
-    } catch (const Interrupted&) {
+    } catch (const Interrupted& end) {
       progress.clear();
-      tell(fmt::format("interrupted in {}; nothing of it is kept", name));
+      tell(fmt::format("interrupted in {}; none of its tables and figures is written{}", name,
+                       end.simulated.empty() ? "" : fmt::format(", the simulation is in '{}' as far as it went", end.simulated.string())));
       return interrupted_status;
     }
   }

@@ -31,7 +31,7 @@ SimulationReport simulate_scene(const Settings& settings, const std::string& nam
   options.steps.reset();
   effort.progress.clear();
   const SimulationReport report = simulate_new(settings, folder / (name + ".h5"), options);
-  if (report.interrupted) throw Interrupted();
+  if (report.interrupted) throw Interrupted{folder / (name + ".h5")};
   return report;
 }
 
@@ -39,7 +39,7 @@ sim::TrajectoryReader open_trajectory(const std::string& name, const Effort& eff
   return sim::TrajectoryReader(effort.options.output / (name + ".h5"));
 }
 
-/// Largest errors of area and volume in the last step, the smallest gap and the longest step of a run.
+/// Largest errors of area and volume in the last step; the smallest gap and all retries of a run.
 struct RunRecord {
   double area_error = 0, volume_error = 0, gap = std::numeric_limits<double>::infinity();
   int retries = 0;

@@ -18,7 +18,9 @@ struct Effort {
 };
 
 /// Thrown by reproductions when the user interrupts.
-struct Interrupted {};
+struct Interrupted {
+  std::filesystem::path simulated;  ///< a trajectory as far as it went; empty: none
+};
 void stop_if_interrupted();
 
 Report reproduce_upsampling(const Effort&);           // Table 2

@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 using Catch::Contains;
 namespace fs = std::filesystem;
@@ -58,6 +59,22 @@ TEST_CASE("an unknown item is refused with the nearest known one", "[reproduce]"
   const support::Outcome none = support::run(folder, {TANKTREAD_PROGRAM, "reproduce"});
   CHECK(none.status == 0);
   CHECK_THAT(none.out, Contains("table2") && Contains("fig6"));
+}
+
+TEST_CASE("an interrupted reproduction says what it leaves", "[reproduce]") {
+  const support::TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const pid_t child = support::start(folder, {TANKTREAD_PROGRAM, "reproduce", "fig6", "-q", "-o", out});
+  const bool simulating = support::wait_for(folder / "r/fig6.h5");
+  kill(child, SIGINT);
+  const support::Outcome outcome = support::finish(folder, child);
+  REQUIRE(simulating);
+  CHECK(outcome.status == 130);
+  CHECK_THAT(outcome.err, Contains("interrupted in fig6; none of its tables and figures is written, the simulation is in '" + out +
+                                   "/fig6.h5' as far as it went"));
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(out)) names.insert(entry.path().filename().string());
+  CHECK(names == std::set<std::string>{"fig6.h5", "fig6.toml"});
 }
 
 TEST_CASE("the double layer converges as required", "[reproduce]") {

@@ -58,7 +58,7 @@ TEST_CASE("neighbouring streamlines keep their distance and leave no gap") {
 }
 
 TEST_CASE("a streamline keeps the stream function, through slow and fast") {
-  // psi = y - y^3/3 + x^2/2: a saddle at (0, -1) and a centre at (0, 1).
+  // psi = y - y^3/3 - x^2/2: a saddle at (0, -1) and a centre at (0, 1).
   const auto psi = [](double x, double y) { return y - y * y * y / 3 - x * x / 2; };
   const auto flow = [](const Vector2d& p) { return Vector2d(1 - p.y() * p.y(), p.x()); };
   render::StreamlineOptions o;
