@@ -34,11 +34,12 @@ VolumeMoments volume_moments(const sim::Coefficients& position) {
   const Eigen::Index columns = 2 * nodes;
   const sim::Vector phi = sim::Vector::LinSpaced(columns + 1, 0, 2 * std::numbers::pi).head(columns);
   const sim::FirstDerivatives x = sim::sample_grid(position, rule.theta, phi);
+  const sim::Vec3 origin = x.value.colwise().mean().transpose();  // far from the scene's own, digits would be lost
   VolumeMoments m;
   sim::Vec3 first = sim::Vec3::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < x.value.rows(); ++i) {
-    const sim::Vec3 p = x.value.row(i), t = x.t.row(i), f = x.f.row(i);
+    const sim::Vec3 p = x.value.row(i).transpose() - origin, t = x.t.row(i), f = x.f.row(i);
     const Eigen::Index latitude = i % nodes;  // the rule's weights are for d(cos theta) = sin theta d theta
     const double flux = p.dot(t.cross(f)) * rule.weight[latitude] / std::sin(rule.theta[latitude]) * 2 * std::numbers::pi /
                         static_cast<double>(columns);
@@ -46,8 +47,9 @@ VolumeMoments volume_moments(const sim::Coefficients& position) {
     first += flux / 4 * p;
     second += flux / 5 * p * p.transpose();
   }
-  m.centroid = first / m.volume;
-  m.second = second / m.volume - m.centroid * m.centroid.transpose();
+  const sim::Vec3 offset = first / m.volume;
+  m.centroid = origin + offset;
+  m.second = second / m.volume - offset * offset.transpose();
   return m;
 }
 

@@ -137,6 +137,17 @@ TEST_CASE("volume, centre of mass and second moments of an ellipsoid are exact")
   CHECK((m.second - exact).norm() < 1e-10);
 }
 
+TEST_CASE("volume and second moments keep their digits far from the origin") {
+  const Vec3 a(1.6, 1.1, 0.5), centre(3e4, -4e4, 2e4);
+  const Eigen::Matrix3d r = turn(48, {1, 1, 2});
+  const render::VolumeMoments m = render::volume_moments(surfaces::ellipsoid(a, r, centre).position);
+  // A coordinate has 1e-16 of 5e4 only; about the scene's origin the second moments would lose another 1e-16 of (5e4)^2.
+  CHECK(m.volume == Approx(4 * std::numbers::pi / 3 * a.prod()).epsilon(1e-9));
+  CHECK((m.centroid - centre).norm() < 1e-9);
+  const Eigen::Matrix3d exact = r * Vec3(a.cwiseProduct(a) / 5).asDiagonal() * r.transpose();
+  CHECK((m.second - exact).norm() < 1e-9);
+}
+
 TEST_CASE("normals of the surface are those of the ellipsoid, poles included") {
   const Vec3 a(1.4, 0.8, 0.6);
   const auto x = surfaces::ellipsoid(a, turn(0, {0, 0, 1}));
