@@ -4,6 +4,7 @@
 #include "sim/basis.h"
 #include "sim/diagnostics.h"
 #include "sim/legendre.h"
+#include "sim/shapes.h"
 
 #include <fmt/format.h>
 
@@ -16,21 +17,6 @@ namespace app {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-/// Reduced volume of a prolate spheroid of aspect ratio r.
-double prolate_volume(double r) {
-  const double e = std::sqrt(1 - 1 / (r * r)), area = 2 * pi * (1 + r * std::asin(e) / e), volume = 4 * pi / 3 * r;
-  return volume / (4 * pi / 3 * std::pow(area / (4 * pi), 1.5));
-}
-
-double prolate_ratio(double nu) {
-  double low = 1 + 1e-9, high = 30;
-  for (int k = 0; k < 100; ++k) {
-    const double middle = (low + high) / 2;
-    (prolate_volume(middle) > nu ? low : high) = middle;
-  }
-  return low;
-}
 
 /// Contrasts that occur, in order.
 std::vector<double> contrasts_of(const std::vector<SteadyPoint>& points) {
@@ -79,7 +65,8 @@ SteadyPoint steady_point(sim::Plans& plans, const sim::VesicleState& v, double v
 }
 
 SteadyPoint keller_skalak(double nu, double lambda) {
-  const double r = prolate_ratio(nu), a1 = std::pow(r, 2.0 / 3), a2 = std::pow(r, -1.0 / 3);
+  const sim::Vec3 axes = sim::spheroid_axes(nu, true);
+  const double r = axes[0] / axes[1], a1 = std::pow(r, 2.0 / 3), a2 = std::pow(r, -1.0 / 3);
   // g = int_0^inf (a1^2 + s)^(-3/2) (a2^2 + s)^(-2) ds with s = x / (1 - x).
   const sim::GaussLegendre rule = sim::gauss_legendre(80);
   double g = 0;
