@@ -3,6 +3,8 @@
 #include "output.h"
 #include "version.h"
 
+#include "render/figure.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,10 +35,6 @@ std::string without_trailing_spaces(std::string line) {
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
   return text;
-}
-
-std::string csv_cell(const std::string& text) {
-  return text.find_first_of(",\"\n") == std::string::npos ? text : fmt::format("\"{}\"", replaced(text, "\"", "\"\""));
 }
 
 template <class Cell>
@@ -96,7 +94,7 @@ std::string markdown_text(const TextTable& table) {
 
 std::string csv_text(const TextTable& table) {
   const auto line = [](const std::vector<std::string>& row) {
-    return fmt::format("{}\n", joined(row, ",", [](const std::string& c, std::size_t) { return csv_cell(c); }));
+    return fmt::format("{}\n", joined(row, ",", [](const std::string& c, std::size_t) { return render::csv_cell(c); }));
   };
   std::string text = line(table.columns);
   for (const auto& row : table.rows) text += line(row);

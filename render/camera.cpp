@@ -300,14 +300,20 @@ glm::dvec2 Camera::picture_place(const dvec3& point) const {
   return glm::dvec2(clip) / static_cast<double>(clip.w);
 }
 
+namespace {
+
+/// The coordinate axis that a vector follows most.
+int leading(const dvec3& v) {
+  const dvec3 a = glm::abs(v);
+  return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+}
+
+}  // namespace
+
 sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
   const Camera camera = make_camera(framing, moment);
   // The coordinate plane that faces the viewer most, through the target: there the velocity is what it seems to be.
   const ViewAxes& axes = framing.axes;  // of a camera that turns: its first view, so that the plane does not change
-  const auto leading = [](const dvec3& v) {
-    const dvec3 a = glm::abs(v);
-    return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-  };
   const auto unit = [](int axis) {
     dvec3 e(0);
     e[axis] = 1;
@@ -342,10 +348,6 @@ sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
 
 double arrows_shown(const Framing& framing, const Moment& moment) {
   if (!framing.turns()) return 1;
-  const auto leading = [](const dvec3& v) {
-    const dvec3 a = glm::abs(v);
-    return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-  };
   return glm::smoothstep(0.2, 0.45, std::abs(framing.axes_at(moment.time).back[leading(framing.axes.back)]));
 }
 

@@ -1,5 +1,7 @@
 #include "colormap.h"
 
+#include "srgb.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -9,11 +11,7 @@ namespace {
 
 constexpr double white_x = 0.95047, white_z = 1.08883;  // D65, y = 1
 
-double light(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
-double code(double v) {
-  v = std::clamp(v, 0.0, 1.0);
-  return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
+double code(double v) { return srgb_of(std::clamp(v, 0.0, 1.0)); }
 
 constexpr double knee = 6.0 / 29;  // below it the cube root is a straight line
 double root(double t) { return t > knee * knee * knee ? std::cbrt(t) : t / (3 * knee * knee) + 4.0 / 29; }
@@ -51,7 +49,7 @@ Lab along(const ColourMapRow& map, double share) {
 }  // namespace
 
 Lab to_lab(const Colour& c) {
-  const double r = light(c.r), g = light(c.g), b = light(c.b);
+  const double r = linear_of(c.r), g = linear_of(c.g), b = linear_of(c.b);
   const double x = root((0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / white_x);
   const double y = root(0.2126729 * r + 0.7151522 * g + 0.0721750 * b);
   const double z = root((0.0193339 * r + 0.1191920 * g + 0.9503041 * b) / white_z);

@@ -110,11 +110,7 @@ std::string letter(std::size_t k) {
 
 Colour colour_of_time(double t) {
   constexpr std::array<Colour, 4> stops{{{0.10, 0.17, 0.42}, {0.00, 0.45, 0.62}, {0.20, 0.66, 0.45}, {0.93, 0.62, 0.13}}};
-  const double place = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(place), stops.size() - 2);
-  const double f = place - static_cast<double>(i);
-  const auto mix = [&](double a, double b) { return a + f * (b - a); };
-  return {mix(stops[i].r, stops[i + 1].r), mix(stops[i].g, stops[i + 1].g), mix(stops[i].b, stops[i + 1].b)};
+  return between(stops, t);
 }
 
 std::string csv_cell(const std::string& text) {

@@ -118,6 +118,9 @@ struct Sheet {
 /// Rows of panels at one scale that fill the page, each as wide as its state needs.
 Sheet sheet_layout(const FigureInput& input);
 
+/// A text that may hold commas or quotes as one cell of a CSV.
+std::string csv_cell(const std::string& text);
+
 /// stem.png, stem.svg, stem.pdf, stem.csv; returns the four paths. Throws std::runtime_error with path and reason.
 std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem);
 

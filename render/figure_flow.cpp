@@ -16,11 +16,7 @@ namespace {
 // Pale to deep blue-green: light enough under black lines, monotone in grey.
 Colour colour_of_speed(double t) {
   constexpr std::array<Colour, 5> stops{{{0.985, 0.985, 0.965}, {0.85, 0.93, 0.87}, {0.62, 0.83, 0.82}, {0.38, 0.68, 0.77}, {0.22, 0.50, 0.69}}};
-  const double place = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(place), stops.size() - 2);
-  const double f = place - static_cast<double>(i);
-  const auto mix = [&](double a, double b) { return a + f * (b - a); };
-  return {mix(stops[i].r, stops[i + 1].r), mix(stops[i].g, stops[i + 1].g), mix(stops[i].b, stops[i + 1].b)};
+  return between(stops, t);
 }
 
 std::uint8_t byte(double v) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0))); }

@@ -19,7 +19,5 @@ std::string time_text(const FigureInput& input, double time);
 std::string letter(std::size_t k);
 /// Dark blue, green, orange: early (0) to late (1), distinct in grey as well.
 Colour colour_of_time(double t);
-/// A text that may hold commas or quotes as one cell of a CSV.
-std::string csv_cell(const std::string& text);
 
 }  // namespace render

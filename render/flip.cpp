@@ -1,5 +1,7 @@
 #include "flip.h"
 
+#include "srgb.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,8 +22,6 @@ struct Size {
 };
 
 // --- colours: linear sRGB <-> XYZ (D65), and from XYZ to YCxCz and CIELAB -----------------------------------------
-
-float linear_of(float srgb) { return srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F); }
 
 // From sRGB's primaries and white; the second is the inverse of the first.
 constexpr double to_xyz[3][3] = {{10135552. / 24577794, 8788810. / 24577794, 4435075. / 24577794},

@@ -1,5 +1,7 @@
 #include "image.h"
 
+#include "srgb.h"
+
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -8,9 +10,6 @@ namespace render {
 namespace {
 
 constexpr int linear_steps = 4096;  // the steepest part of the sRGB curve needs 0.8 codes a step, so codes survive
-
-double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
-double srgb_of(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
 
 struct Tables {
   std::array<std::uint32_t, 256> linear;  // 0..65535

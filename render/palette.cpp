@@ -2,6 +2,7 @@
 
 #include "sim/catalogue.h"
 
+#include <algorithm>
 #include <charconv>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,14 @@ Colour parse_colour(std::string_view text) {
       return {(code >> 16) / 255.0, (code >> 8 & 255) / 255.0, (code & 255) / 255.0};
   throw std::invalid_argument("'" + std::string(text) + "' is no known colour" +
                               sim::suggestion(text, sim::row_names(body_colours())) + ", and not #rrggbb");
+}
+
+Colour between(std::span<const Colour> stops, double share) {
+  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(place), stops.size() - 2);
+  const double f = place - static_cast<double>(i);
+  const auto mix = [&](double a, double b) { return a + f * (b - a); };
+  return {mix(stops[i].r, stops[i + 1].r), mix(stops[i].g, stops[i + 1].g), mix(stops[i].b, stops[i + 1].b)};
 }
 
 }  // namespace render

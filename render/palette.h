@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +32,9 @@ inline const std::vector<ColourRow>& body_colours() {
 inline Colour body_colour(std::size_t vesicle) { return body_colours()[vesicle % body_colours().size()].colour; }
 /// A name of body_colours(), or "#rrggbb". Throws std::invalid_argument that names the nearest known name.
 Colour parse_colour(std::string_view text);
+
+/// Along stops at equal distances, from the first (0) to the last (1); beyond them the nearest.
+Colour between(std::span<const Colour> stops, double share);
 
 /// Okabe and Ito's colours, for curves on white; yellow left out.
 inline constexpr std::array<Colour, 7> curve_colours{{
