@@ -48,7 +48,7 @@ inline constexpr std::array<Colour, 7> curve_colours{{
 }};
 constexpr Colour curve_colour(std::size_t curve) { return curve_colours[curve % curve_colours.size()]; }
 
-inline constexpr Colour tracer_bright{0.95, 0.36, 0.22};
+inline constexpr Colour tracer_bright{1.00, 0.84, 0.25};
 inline constexpr Colour tracer_dark{0.13, 0.20, 0.31};
 inline constexpr Colour ink{0.13, 0.15, 0.19};       ///< text on pictures
 inline constexpr Colour note_ink{0.70, 0.30, 0.08};

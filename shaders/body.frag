@@ -121,8 +121,8 @@ void main() {
   float sample_size = max(length(vec2(dot(dFdx(v_eye), away), dot(dFdy(v_eye), away))) / r, 1e-9);
   float shown = bright < 0.0 ? 0.0 : 1.0;
   float ring = shown * (1.0 - smoothstep(-0.6, 0.6, (r - u_tracer_radius) / sample_size));
-  float core = shown * (1.0 - smoothstep(-0.6, 0.6, (r - 0.66 * u_tracer_radius) / sample_size));
-  albedo = mix(albedo, vec3(0.95), ring);
+  float core = shown * (1.0 - smoothstep(-0.6, 0.6, (r - (bright > 0.5 ? 0.78 : 0.66) * u_tracer_radius) / sample_size));
+  albedo = mix(albedo, bright > 0.5 ? u_tracer_dark : vec3(0.95), ring);  // the marked one is told apart in grey, too
   albedo = mix(albedo, bright > 0.5 ? u_tracer_bright : u_tracer_dark, core);
   gloss = mix(gloss, 0.45, ring);
 #ifdef GHOST
