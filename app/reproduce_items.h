@@ -34,6 +34,10 @@ Report reproduce_block_error(const Effort&);          // Figure 5
 Report reproduce_two_vesicles(const Effort&);         // Figure 6
 Report reproduce_tank_treading(const Effort&);        // other authors' angles and frequencies
 
+/// Orders of tables 4 and 5.
+std::vector<int> table_orders(const Effort&);
+inline constexpr double paper_step = 0.21;  ///< of its runs in shear, times the shear rate
+
 /// The four shapes of tables 2 and 3; the paper's are only pictured.
 struct NamedShape {
   std::string name;
@@ -43,6 +47,8 @@ const std::vector<NamedShape>& reference_shapes();
 
 /// One prolate of reduced volume 0.85 and area 4 pi along x in the shear flow u = z e_x, kappa_b = 0.01.
 sim::Scene sheared_prolate(int order, double viscosity_contrast);
+/// How the reports call it.
+extern const char* const prolate_setting;
 /// Two of them with centres -+(1.2, 0, -0.5): scenes/two-vesicles.toml.
 sim::Scene sheared_pair(int order, double viscosity_contrast);
 
