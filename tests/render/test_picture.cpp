@@ -1,4 +1,4 @@
-// What is drawn, measured against geometry.
+// What is drawn of membranes, measured against geometry.
 #include "render/draw.h"
 #include "render/style.h"
 
@@ -220,71 +220,6 @@ TEST_CASE("supersampling changes contours, not areas of even colour") {
     for (int x = 70; x < 130; ++x) CHECK(std::abs(one.at(x, y)[0] - three.at(x, y)[0]) <= 2);
 }
 
-TEST_CASE("arrows point along the flow and none is drawn where it rests") {
-  render::Renderer renderer = software();
-  render::ViewParameters view = surfaces::bare_view(400, 300);
-  view.flow_arrows = true;
-  render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), view);
-  frame.bodies.clear();
-  frame.arrows.points = sim::Matrix::Zero(3, 3);
-  frame.arrows.points.col(2) << -0.5, 0, 0.5;
-  frame.arrows.velocities = sim::Matrix::Zero(3, 3);
-  frame.arrows.velocities.col(0) << -1, 0, 1;
-  const Image image = render::draw_frame(renderer, frame);
-  const auto extent = [&](int from, int to) {  // number of drawn px in the left and right half of a band of rows
-    std::pair<int, int> sides{0, 0};
-    for (int y = from; y < to; ++y)
-      for (int x = 0; x < 400; ++x)
-        if (drawn(image.at(x, y))) ++(x < 200 ? sides.first : sides.second);
-    return sides;
-  };
-  const auto upper = extent(0, 130), middle = extent(130, 170), lower = extent(170, 300);
-  CHECK(upper.second > upper.first);  // the head is at the right
-  CHECK(lower.first > lower.second);
-  CHECK(middle == std::pair<int, int>{0, 0});
-  CHECK(upper.first > 20);
-}
-
-TEST_CASE("an arrow that would touch a membrane's picture is left out, one beside it is drawn") {
-  render::Renderer renderer = software();
-  const render::Frame without = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), surfaces::bare_view(400, 300));
-  const auto changed = [&](double x, double y) {  // px that an arrow in the plane y changes
-    render::Frame frame = without;
-    frame.view.flow_arrows = true;
-    frame.arrows.points = Vec3(x, y, 0).transpose();
-    frame.arrows.velocities = Vec3(1, 0, 0).transpose();
-    return render::difference(render::draw_frame(renderer, without), render::draw_frame(renderer, frame)).above;
-  };
-  CHECK(changed(1.6, 0) > 30);
-  CHECK(changed(1.05, 0) == 0);
-  CHECK(changed(0, 0) == 0);
-  CHECK(changed(0, -3) == 0);  // before the sphere: arrows are the ground of the picture, never in front
-}
-
-TEST_CASE("a camera that follows through a resting fluid shows beads, which stay where they are") {
-  render::Renderer renderer = software();
-  std::vector<render::StateSummary> states;
-  for (const double x : {0.0, 40.0}) states.push_back(render::summarize(surfaces::state_of({surfaces::sphere({x, 0, 0})})));
-  render::ViewParameters view = surfaces::bare_view(400, 300);
-  view.flow_arrows = true;
-  const auto beads = [&](const std::string& follow) {
-    view.follow = follow;
-    const render::Framing framing = render::frame_trajectory(states, view);
-    render::Frame frame;
-    frame.view = view;
-    frame.camera = render::make_camera(framing, states[0].centroid);
-    frame.arrows.points = render::arrow_points(framing, states[0].centroid);
-    frame.arrows.velocities = sim::Matrix::Zero(frame.arrows.points.rows(), 3);
-    const Image image = render::draw_frame(renderer, frame);
-    int count = 0;
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) count += drawn(image.at(x, y));
-    return count;
-  };
-  CHECK(beads("always") > 200);
-  CHECK(beads("never") == 0);
-}
-
 TEST_CASE("the contour of a sphere is a line of the width asked for, and its edges are shaded") {
   render::Renderer renderer = software();
   render::ViewParameters view = surfaces::bare_view(540, 540);
@@ -363,53 +298,6 @@ TEST_CASE("a cut shows the inside, its rim lies on the plane, and nothing of the
   const render::StateSummary summary = render::summarize(state);
   aside.camera = render::make_camera(render::frame_trajectory(std::span(&summary, 1), aside.view), summary.centroid);
   CHECK(silhouette(render::draw_frame(renderer, aside), aside.camera).area == Approx(std::numbers::pi / 2).epsilon(0.05));
-}
-
-TEST_CASE("lines of the flow lie behind closed membranes, and in their place inside an opened one") {
-  render::Renderer renderer = software();
-  const sim::State state = surfaces::state_of({surfaces::sphere()});
-  for (const bool opened : {false, true}) {
-    render::ViewParameters view = surfaces::bare_view(400, 400);
-    view.style = opened ? "cutaway" : "plain";
-    const render::Frame without = surfaces::painted(surfaces::frame_of(state, view), state);
-    render::Frame with = without;
-    with.flow_lines.lines = {{{{-1.2, -0.01, 0.3}, {0, -0.01, 0.3}, {1.2, -0.01, 0.3}}, false, {}}};
-    const Image a = render::draw_frame(renderer, without), b = render::draw_frame(renderer, with);
-    const double px = 200 / with.camera.half_width;
-    const auto changed = [&](double x, double z) {
-      const int column = static_cast<int>(200 + x * px), row = static_cast<int>(200 - z * px);
-      return !std::equal(a.at(column, row), a.at(column, row) + 3, b.at(column, row));
-    };
-    CHECK(changed(1.1, 0.3));
-    CHECK(changed(-1.1, 0.3));
-    CHECK(changed(0.1, 0.3) == opened);
-    CHECK_FALSE(changed(1.1, 0.4));
-  }
-}
-
-TEST_CASE("captions are drawn where asked for and leave the rest alone") {
-  render::Renderer renderer = software();
-  render::ViewParameters view = surfaces::bare_view(480, 270);
-  render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), view);
-  frame.captions.time = "γ̇t = 12.50";
-  frame.captions.parameters = "λ = 1   ν = 0.85";
-  const Image off = render::draw_frame(renderer, frame);
-  frame.view.time_stamp = frame.view.caption = frame.view.scale_bar = true;
-  const Image on = render::draw_frame(renderer, frame);
-  int upper = 0, lower = 0, elsewhere = 0;
-  for (int y = 0; y < 270; ++y)
-    for (int x = 0; x < 480; ++x) {
-      const bool differs = !std::equal(on.at(x, y), on.at(x, y) + 3, off.at(x, y));
-      if (y < 45)
-        upper += differs;
-      else if (y > 240)
-        lower += differs;
-      else
-        elsewhere += differs;
-    }
-  CHECK(upper > 200);
-  CHECK(lower > 60);
-  CHECK(elsewhere == 0);
 }
 
 TEST_CASE("every style of the catalogue draws its own picture") {
