@@ -64,7 +64,7 @@ TEST_CASE("an unknown item is refused with the nearest known one", "[reproduce]"
 TEST_CASE("an interrupted reproduction says what it leaves", "[reproduce]") {
   const support::TemporaryFolder folder;
   const std::string out = (folder / "r").string();
-  const pid_t child = support::start(folder, {TANKTREAD_PROGRAM, "reproduce", "fig6", "-q", "-o", out});
+  const pid_t child = support::start(folder, {TANKTREAD_PROGRAM, "reproduce", "fig6", "--quick", "-q", "-o", out});
   const bool simulating = support::wait_for(folder / "r/fig6.h5");
   kill(child, SIGINT);
   const support::Outcome outcome = support::finish(folder, child);
