@@ -80,8 +80,6 @@ fs::path name_of_frame(std::size_t number) { return fmt::format("{:06}.png", num
 /// The numbers of the frames that this process draws, and what becomes of them.
 struct Task {
   std::size_t number;
-  fs::path path;
-  std::string hash;
   bool current;
 };
 
@@ -89,9 +87,9 @@ std::vector<Task> tasks_of(const Production& production, const std::vector<doubl
                            const Options& options) {
   std::vector<Task> tasks;
   for (auto f = static_cast<std::size_t>(options.shard); f < times.size(); f += static_cast<std::size_t>(options.shards)) {
-    Task task{f, frames / name_of_frame(f), hash_of(production, times[f]), false};
-    task.current = options.shader_dir.empty() && is_current(task.path, task.hash);
-    tasks.push_back(std::move(task));
+    const bool current =
+        options.shader_dir.empty() && is_current(frames / name_of_frame(f), hash_of(production, times[f]));
+    tasks.push_back({f, current});
   }
   return tasks;
 }
@@ -198,6 +196,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
   Progress progress("rendering", options.quiet);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const Task& task = tasks[i];
+    const fs::path path = frames / name_of_frame(task.number);
     if (interrupted()) {
       report.interrupted = true;
       break;
@@ -205,15 +204,15 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
     progress.show(static_cast<double>(i) / static_cast<double>(tasks.size()),
                   fmt::format("frame {} of {}", i + 1, tasks.size()));
     if (task.current) {
-      if (film.encoder) film.attempt([&] { film.encoder->add(render::read_png(task.path).image); });
+      if (film.encoder) film.attempt([&] { film.encoder->add(render::read_png(path).image); });
       continue;
     }
     if (!studio) studio.emplace(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
     auto image = std::make_shared<render::Image>(draw_picture(*studio, production, times[task.number]));
     film.attempt([&] { film.encoder->add(*image); });
     written();
-    const render::PngText text = picture_text(sources.front(), *studio, times[task.number], task.hash);
-    writing = std::async(std::launch::async, [image, path = task.path, text] { render::write_png(path, *image, text); });
+    const render::PngText text = picture_text(sources.front(), *studio, times[task.number], hash_of(production, times[task.number]));
+    writing = std::async(std::launch::async, [image, path, text] { render::write_png(path, *image, text); });
     ++report.drawn;
   }
   written();
