@@ -105,7 +105,7 @@ void main() {
 #endif
 
 #ifdef MARKS
-  float mark = max(parallel_line(p, 0.5 * pi, 1.9 * u_half_width), meridian_line(p, 0.0, 1.9 * u_half_width));
+  float mark = max(parallel_line(p, 0.5 * pi, 3.0 * u_half_width), meridian_line(p, 0.0, 3.0 * u_half_width));  // told by width in grey
   albedo = mix(albedo, vec3(0.66, 0.02, 0.03), mark);
   gloss *= 1.0 - 0.7 * mark;
 #endif
