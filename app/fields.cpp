@@ -110,6 +110,7 @@ void give_range(render::Legend& legend, const render::ViewParameters& view, std:
   legend.low = low;
   legend.high = high;
   legend.colours = render::colour_table(map);
+  legend.mirrored = map.kind == render::MapKind::diverging;
   const double slack = 0.005 * (high - low);
   legend.below = least < low - slack;
   legend.above = most > high + slack;
@@ -138,6 +139,7 @@ void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& s
   view.field_range.clear();
   std::vector<double> all = values;
   give_range(legend, view, all, false);
+  legend.mirrored = false;  // whole bodies have one value each: no lines
   for (const double value : values) p.bodies.push_back(render::mapped(legend.colours, (value - legend.low) / (legend.high - legend.low)));
   p.legend = legend;
 }

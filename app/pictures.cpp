@@ -194,16 +194,21 @@ void paste(render::Image& into, const render::Image& part, int left, int top) {
     std::copy_n(part.at(0, y), static_cast<std::size_t>(part.width) * 3, into.at(left, top + y));
 }
 
-/// One range for all, so that equal colours mean equal values.
-void share_legend(std::vector<Painting>& paintings) {
+/// One range for all, so that equal colours mean equal values; about zero if that of one is, unless it was `given`.
+void share_legend(std::vector<Painting>& paintings, bool given) {
   for (Painting& p : paintings)
     if (!p.legend || !p.field || p.field != paintings.front().field) return;
-  render::Legend all = *paintings.front().legend;
+  const auto mirrored = std::find_if(paintings.begin(), paintings.end(), [](const Painting& p) { return p.legend->mirrored; });
+  render::Legend all = *(mirrored != paintings.end() ? *mirrored : paintings.front()).legend;
   for (const Painting& p : paintings) {
     all.low = std::min(all.low, p.legend->low);
     all.high = std::max(all.high, p.legend->high);
     all.below = all.below || p.legend->below;
     all.above = all.above || p.legend->above;
+  }
+  if (all.mirrored && !given) {
+    all.high = std::max(std::abs(all.low), std::abs(all.high));
+    all.low = -all.high;
   }
   for (Painting& p : paintings) p.legend = all;
 }
@@ -239,7 +244,7 @@ Production prepare_pictures(const std::vector<PictureSource>& sources) {
     captions.push_back(c);
     production.hash += fmt::format("{}-{}-", picture_hash(settings), trajectory.count());
   }
-  share_legend(paintings);
+  share_legend(paintings, !first.field_range.empty());
   production.hash += version();
 
   std::vector<std::string> cameras = first.views;

@@ -1,7 +1,10 @@
 #include "colour_bar.h"
 
+#include "style.h"
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace render {
 namespace {
@@ -26,15 +29,20 @@ double widest_tick(const Font& font, double size, const Legend& legend) {
   return widest;
 }
 
+double tick_step(double low, double high) {
+  const double rough = (high - low) / 5, power = std::pow(10, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.5, 2.0, 1.0})
+    if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
+  return step;
+}
+
 }  // namespace
 
 std::vector<double> bar_ticks(double low, double high) {
   std::vector<double> ticks;
   if (!(high > low)) return {low};
-  const double rough = (high - low) / 5, power = std::pow(10, std::floor(std::log10(rough)));
-  double step = 10 * power;
-  for (const double factor : {5.0, 2.5, 2.0, 1.0})
-    if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
+  const double step = tick_step(low, high);
   for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push_back(k == 0 ? 0 : k * step);
   return ticks;
 }
@@ -46,7 +54,7 @@ BarPlace colour_bar_place(const Image& image, const Font& font, const Legend& le
   return {std::round(right - width), std::round(0.295 * image.height), std::round(width), height};
 }
 
-void draw_colour_bar(Image& image, const Font& font, const Legend& legend) {
+void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool sign_dots) {
   const Sizes s = sizes_of(image);
   const BarPlace bar = colour_bar_place(image, font, legend);
   const double point = 0.9 * bar.width;  // of the ends
@@ -74,6 +82,16 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend) {
             };
             if (legend.above) end(bar.top, bar.top - point, 1);
             if (legend.below) end(bottom, bottom + point, 0);
+            if (sign_dots) {
+              const double spacing = bar.width / std::max(1.0, std::round(bar.width / sign_dot_spacing(image.height)));
+              for (double y = bar.top + bar.height / 2 + spacing / 2; y < bottom; y += spacing)
+                for (double x = bar.left + spacing / 2; x < bar.left + bar.width; x += spacing) {
+                  const double share = (bottom - y) / bar.height, shown = std::min((0.5 - share) / SignDots::full, 1.0);
+                  set_colour(cairo, sign_dot_colour(mapped(legend.colours, share)));
+                  cairo_arc(cairo, x, y, SignDots::radius * spacing * shown, 0, 2 * std::numbers::pi);
+                  cairo_fill(cairo);
+                }
+            }
             set_colour(cairo, ink);
             cairo_set_line_width(cairo, std::max(1.5 * image.height / 1080.0, 0.8));
             cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);

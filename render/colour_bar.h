@@ -15,6 +15,6 @@ struct BarPlace {
 };
 BarPlace colour_bar_place(const Image& image, const Font& font, const Legend& legend);
 
-void draw_colour_bar(Image& image, const Font& font, const Legend& legend);
+void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool sign_dots = false);
 
 }  // namespace render

@@ -5,6 +5,8 @@
 #include "draw_values.h"
 #include "style.h"
 
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace render {
@@ -14,6 +16,14 @@ constexpr double tracer_radius = 0.088;  // area radii
 
 Colour outline_colour(const Body& body) {
   return {0.10 + 0.08 * body.colour.r, 0.11 + 0.08 * body.colour.g, 0.14 + 0.08 * body.colour.b};
+}
+
+// From pole to pole of the label, so that the dots are as dense as on the bar. In half octaves: a camera that moves does not
+// shift them all the time.
+double sign_dot_rows(const Frame& frame, const Body& body) {
+  const double radius = body.mesh.area_radius / frame.camera.half_height * frame.view.size[1] / 2;  // px
+  const double wanted = std::numbers::pi * radius / sign_dot_spacing(frame.view.size[1]);
+  return std::max(4.0, std::round(std::exp2(std::round(2 * std::log2(wanted)) / 2)));
 }
 
 }  // namespace
@@ -30,7 +40,8 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
   const Gl& gl = context_.gl();
   const StyleRow& style = find_style(frame.view.style);
   const std::vector<Mesh::Tracer>& tracers = body.mesh.tracers;
-  const Program& p = program("body", body_defines(style, frame.view, tracers.size()));
+  const bool dotted = style.field && frame.legend && frame.legend->mirrored && frame.view.sign_dots;
+  const Program& p = program("body", body_defines(style, frame.view, tracers.size(), dotted));
   p.use();
   set_camera(p, frame.camera);
   if (style.field) {
@@ -42,6 +53,7 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
     bodies_.attribute(6, shares);
     palette_.bind();
     p.set("u_map", 0);
+    if (dotted) p.set("u_dot_rows", static_cast<float>(sign_dot_rows(frame, body)));
   }
   if (style.cut) {
     const Cut cut = body.cut.value_or(Cut{{0, 0, 0}, 1, {}});  // of nothing

@@ -11,7 +11,7 @@ namespace render {
 
 void draw_captions(Image& image, const Font& font, const Frame& frame) {
   const ViewParameters& view = frame.view;
-  if (frame.legend && view.colour_bar) draw_colour_bar(image, font, *frame.legend);
+  if (frame.legend && view.colour_bar) draw_colour_bar(image, font, *frame.legend, frame.legend->mirrored && view.sign_dots);
   if (frame.profile && view.flow_profile) draw_flow_profile(image, font, *frame.profile);
   if (frame.inset && view.inset) draw_inset(image, font, *frame.inset);
   if (view.triad) draw_triad(image, font, frame.camera);

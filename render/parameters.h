@@ -54,6 +54,7 @@ struct ViewParameters {
   bool flow_profile = false;
   bool inset = false;
   bool colour_bar = true;
+  bool sign_dots = true;
   std::string background = "gradient";
 };
 
@@ -194,6 +195,10 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "inset", .unit = "", .meaning = "draw the cross-section in the (x, z) plane in a corner"}, p.inset);
   v(Parameter{.name = "colour_bar", .unit = "", .meaning = "draw the bar of the style field, or of colour_by"},
     p.colour_bar);
+  v(Parameter{.name = "sign_dots",
+              .unit = "",
+              .meaning = "fields on a diverging map: fine dots on the side below zero, which tell the sign in grey print"},
+    p.sign_dots);
   v(Parameter{.name = "background", .unit = "", .meaning = "the ground behind everything", .choices = background_names},
     p.background);
 }

@@ -30,6 +30,8 @@ struct Legend {
   double low = 0, high = 1;     ///< values at the ends of the map
   ColourTable colours{};
   bool below = false, above = false;  ///< values beyond an end occur; they have its colour
+  /// A field whose map is as light above its middle as below: view.sign_dots marks the lower half.
+  bool mirrored = false;
 };
 
 /// Background velocity at arrow_points(), sampled by whoever knows the flow. Where everything rests, a camera that follows

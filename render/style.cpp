@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
@@ -28,7 +29,15 @@ const StyleRow& find_style(std::string_view name) {
   throw std::invalid_argument("unknown style '" + std::string(name) + "'" + sim::suggestion(name, sim::row_names(styles())));
 }
 
-std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers) {
+Colour sign_dot_colour(const Colour& c) {
+  const bool light = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b > 0.33;
+  const auto channel = [&](double v) { return light ? 0.35 * v : v + 0.6 * (1 - v); };
+  return {channel(c.r), channel(c.g), channel(c.b)};
+}
+
+double sign_dot_spacing(int height) { return std::max(SignDots::spacing * height / 1080, SignDots::least); }
+
+std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers, bool sign_dots) {
   std::string text;
   std::istringstream words{std::string(style.defines)};
   for (std::string word; words >> word;) text += "#define " + word + "\n";
@@ -49,6 +58,7 @@ std::string body_defines(const StyleRow& style, const ViewParameters& view, std:
                         std::max(cap, middle), middle);
     text += fmt::format("#define CAP_THETA {:.9f}\n#define MIDDLE_THETA {:.9f}\n", spacing, 2 * spacing);
   }
+  if (style.field && sign_dots) text += fmt::format("#define SIGN_DOTS\n#define DOT_RADIUS {}\n#define DOT_FULL {}\n", SignDots::radius, SignDots::full);
   if (view.outline_width > 0) text += "#define CONTOUR\n";
   if (style.tracers && view.tracers && tracers > 0) text += fmt::format("#define TRACERS {}\n", tracers);
   return text;

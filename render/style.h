@@ -23,7 +23,19 @@ const std::vector<StyleRow>& styles();
 /// Throws std::invalid_argument that names the nearest known style.
 const StyleRow& find_style(std::string_view name);
 
-/// The #define lines of body.frag for this view; `tracers` dots.
-std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers);
+/// Dots on the lower half of a field's map that is as light above its middle as below: told apart in grey.
+struct SignDots {
+  static constexpr double spacing = 11;   ///< px at a height of 1080
+  static constexpr double least = 6.5;    ///< px
+  static constexpr double radius = 0.25;  ///< of the spacing, when full
+  static constexpr double full = 0.05;    ///< as far below the middle, share of the map; smaller toward the middle
+};
+/// Pixels, on a picture so many pixels high.
+double sign_dot_spacing(int height);
+/// On a colour of the map, sRGB; body.frag does the same.
+Colour sign_dot_colour(const Colour& under);
+
+/// The #define lines of body.frag for this view; `tracers` dots, `sign_dots` on a field.
+std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers, bool sign_dots = false);
 
 }  // namespace render

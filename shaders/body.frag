@@ -5,6 +5,7 @@
 //   FLAT        unlit
 //   GHOST       see-through, both sides
 //   FIELD       colours of a map, unlit so that they can be read off its bar
+//   SIGN_DOTS   with FIELD: dots on the lower half of the map
 //   CUTAWAY     both sides, opened by a plane
 //   CONTOUR     the inner edge of the outline; with GHOST and CUTAWAY the whole outline
 //   TRACERS     number of tracer dots
@@ -26,6 +27,23 @@ uniform float u_contour_width; // samples, where the whole outline is drawn here
 #ifdef FIELD
 in float v_scalar;
 uniform sampler2D u_map;  // 256 texels, sRGB
+#ifdef SIGN_DOTS
+uniform float u_dot_rows;  // from pole to pole
+// Dots evenly spread over the label, in rows of constant colatitude; `shown` 0..1 scales the dot.
+float sign_dot(LabelPoint p, float shown) {
+  float spacing = pi / u_dot_rows;
+  float row = clamp(floor(p.theta / spacing), 0.0, u_dot_rows - 1.0);
+  float theta = (row + 0.5) * spacing;
+  float count = max(floor(2.0 * u_dot_rows * sin(theta) + 0.5), 1.0);
+  float phase = fract(0.618034 * row);
+  float phi = (floor(atan(p.s.y, p.s.x) / (2.0 * pi) * count + phase) + 0.5 - phase) / count * 2.0 * pi;
+  vec3 away = p.s - vec3(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
+  float r = max(length(away), 1e-6);
+  float sample_size = max(length(vec2(dot(p.du, away), dot(p.dv, away))) / r, 1e-9);
+  float densest = spacing / max(length(p.du), length(p.dv));  // samples
+  return shown * smoothstep(2.5, 5.0, densest) * (1.0 - smoothstep(-0.6, 0.6, (r - DOT_RADIUS * shown * spacing) / sample_size));
+}
+#endif
 #endif
 #ifdef TRACERS
 flat in vec4 v_dot, v_next_dot;  // the two tracers nearest to this triangle: eye space, w: 1 bright, 0 dark, -1 none
@@ -131,6 +149,10 @@ void main() {
 #endif
 
 #if defined(FIELD)
+#ifdef SIGN_DOTS
+  vec3 dot_colour = dot(value, vec3(0.2126, 0.7152, 0.0722)) > 0.33 ? 0.35 * value : mix(value, vec3(1.0), 0.6);
+  field_colour = mix(field_colour, dot_colour, sign_dot(p, clamp((0.5 - v_scalar) / DOT_FULL, 0.0, 1.0)));
+#endif
   vec3 colour = field_colour;
 #elif defined(FLAT)
   vec3 colour = encode(albedo);

@@ -1,5 +1,6 @@
 // The range of a field that was not given follows the values of the whole movie.
 #include "app/fields.h"
+#include "app/pictures.h"
 #include "app/scene_file.h"
 
 #include "sim/simulate.h"
@@ -44,4 +45,38 @@ TEST_CASE("the distance to the neighbour is told apart up to three radii, and fa
   CHECK(far.low <= 8);
   CHECK(far.high >= 9);
   CHECK(legend_of("neighbour-distance", 1, "field_range = [0, 5]\n").high == 5);
+}
+
+TEST_CASE("pictures side by side share one range, about zero where one of them has both signs") {
+  const support::TemporaryFolder folder;
+  std::vector<sim::TrajectoryReader> readers;
+  std::vector<app::Settings> settings;
+  for (const char* flow : {"none", "shear"}) {  // a sphere at rest has no tension, one in shear has both signs
+    const std::string text = std::string("[flow]\nkind = \"") + flow + R"("
+[time]
+end = 0.1
+step = 0.1
+[[vesicle]]
+shape = "sphere"
+order = 4
+[view]
+style = "field"
+field = "tension"
+)";
+    settings.push_back(app::parse_scene(text, "s.toml", "."));
+    sim::SimulationOptions options;
+    options.trajectory = (folder / (std::string(flow) + ".h5")).string();
+    sim::simulate(settings.back().scene, options, {});
+    readers.emplace_back(options.trajectory);
+  }
+  for (const std::size_t first : {0U, 1U}) {
+    const app::Production production =
+        app::prepare_pictures({{readers[first], settings[first]}, {readers[1 - first], settings[1 - first]}});
+    for (const app::ViewPanel& panel : production.panels) {
+      CHECK(panel.painting.legend->mirrored);
+      CHECK(panel.painting.legend->high > 1);
+      CHECK(panel.painting.legend->low == -panel.painting.legend->high);
+      CHECK(panel.painting.legend->colours == render::colour_table(render::find_colour_map("blue-red")));
+    }
+  }
 }

@@ -1,6 +1,7 @@
 // Colour maps, colour bars, and that what is painted can be read off them.
 #include "render/colour_bar.h"
 #include "render/draw.h"
+#include "render/style.h"
 
 #include "surfaces.h"
 #include "tests/support/temporary_folder.h"
@@ -118,6 +119,71 @@ TEST_CASE("a pixel of a painted sphere has the colour that the bar has at its va
       }
     CHECK(compared > 20000);
   }
+}
+
+namespace {
+
+/// A sphere of one colour, and what part of its middle is marked in grey: by 12 of 256 levels or more.
+struct Painted {
+  Image image;
+  double grey = 0, marked = 0;
+};
+
+double grey_of(const std::uint8_t* p) { return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2]; }
+
+Painted paint(render::Renderer& renderer, const render::ColourMapRow& map, double value, bool dots, std::string_view camera = "flow-gradient") {
+  render::ViewParameters view = surfaces::bare_view(400, 400);
+  view.style = "field";
+  view.supersampling = 2;
+  view.line_width = 0;
+  view.sign_dots = dots;
+  view.camera = camera;
+  const sim::State state = surfaces::state_of({surfaces::sphere()});
+  render::Frame frame = surfaces::painted(surfaces::frame_of(state, view), state);
+  std::fill(frame.bodies[0].mesh.scalar.begin(), frame.bodies[0].mesh.scalar.end(), static_cast<float>(value));
+  frame.legend->colours = render::colour_table(map);
+  frame.legend->mirrored = map.kind == render::MapKind::diverging;
+  Painted p{render::draw_frame(renderer, frame)};
+  const double clear = 255 * [&] {
+    const render::Colour c = render::mapped(frame.legend->colours, (value + 1) / 2);
+    return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b;
+  }();
+  for (int y = 120; y < 280; ++y)
+    for (int x = 120; x < 280; ++x) {
+      p.grey += grey_of(p.image.at(x, y)) / (160 * 160);
+      p.marked += (std::abs(grey_of(p.image.at(x, y)) - clear) > 12) / (160.0 * 160);
+    }
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("in grey a value below zero is told from the one above it by dots, on every diverging map") {
+  render::Renderer renderer(render::parse_gl_choice("software"));
+  for (const render::ColourMapRow& map : render::colour_maps())
+    for (const double value : {0.15, 0.4, 0.7, 1.0}) {
+      if (map.kind != render::MapKind::diverging) continue;
+      INFO(map.name << " at " << value);
+      const Painted above = paint(renderer, map, value, true), below = paint(renderer, map, -value, true),
+                    bare = paint(renderer, map, -value, false);
+      CHECK(above.grey == Approx(bare.grey).margin(16));  // equal L*; the weights of grey differ a little. Hence the dots
+      CHECK(bare.marked == 0);
+      CHECK(above.marked == 0);
+      CHECK(below.marked > 0.12);  // a full dot covers pi/16 of its cell
+      CHECK(below.marked < 0.40);  // the colour between them is that of the bar
+    }
+}
+
+TEST_CASE("dots of negative values stand as densely at a pole of the membrane as elsewhere, and have their colour") {
+  render::Renderer renderer(render::parse_gl_choice("software"));
+  const render::ColourMapRow& map = render::find_colour_map("blue-red");
+  const Painted side = paint(renderer, map, -0.4, true), pole = paint(renderer, map, -0.4, true, "flow-vorticity");
+  CHECK(pole.marked == Approx(side.marked).epsilon(0.15));
+  const render::Colour colour = render::sign_dot_colour(render::mapped(render::colour_table(map), 0.3));
+  double darkest = 255;
+  for (int y = 180; y < 220; ++y)
+    for (int x = 180; x < 220; ++x) darkest = std::min(darkest, grey_of(pole.image.at(x, y)));
+  CHECK(darkest == Approx(255 * (0.299 * colour.r + 0.587 * colour.g + 0.114 * colour.b)).margin(4));  // a dot is wider than a pixel
 }
 
 TEST_CASE("values beyond the range have the colour of the end, and the bar points beyond it") {

@@ -89,6 +89,15 @@ TEST_CASE("the pair in the field style looks as it did") {
   check_golden("pair_field", surfaces::painted(surfaces::frame_of(pair(), view), pair()));
 }
 
+TEST_CASE("the pair painted about zero, with dots below it, looks as it did") {
+  render::ViewParameters view = small_view();
+  view.style = "field";
+  render::Frame frame = surfaces::painted(surfaces::frame_of(pair(), view), pair());
+  frame.legend->colours = render::colour_table(render::find_colour_map("blue-red"));
+  frame.legend->mirrored = true;
+  check_golden("pair_signs", frame);
+}
+
 TEST_CASE("the pair in the cutaway style looks as it did") {
   render::ViewParameters view = small_view();
   view.style = "cutaway";
