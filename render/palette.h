@@ -14,7 +14,7 @@ struct Colour {
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// Membranes, in the order of the scene's vesicles; neighbours differ in hue and in lightness.
+/// Membranes, in the order of the scene's vesicles; neighbours differ in hue and in grey print.
 struct ColourRow {
   std::string_view name;
   std::string_view meaning;
@@ -22,10 +22,10 @@ struct ColourRow {
 };
 inline const std::vector<ColourRow>& body_colours() {
   static const std::vector<ColourRow> rows{
-      {"coral", "#e3806b", {0.89, 0.50, 0.42}}, {"sky", "#78a8db", {0.47, 0.66, 0.86}},
-      {"amber", "#edc266", {0.93, 0.76, 0.40}}, {"jade", "#59ad94", {0.35, 0.68, 0.58}},
-      {"lilac", "#b88cc7", {0.72, 0.55, 0.78}}, {"slate", "#9ea8b8", {0.62, 0.66, 0.72}},
-      {"rose", "#d69eb3", {0.84, 0.62, 0.70}},  {"umber", "#8c7a66", {0.55, 0.48, 0.40}},
+      {"coral", "#e3806b", {0.89, 0.50, 0.42}}, {"sky", "#99c7f0", {0.60, 0.78, 0.94}},
+      {"jade", "#59ad94", {0.35, 0.68, 0.58}},  {"amber", "#edc266", {0.93, 0.76, 0.40}},
+      {"umber", "#8c7a66", {0.55, 0.48, 0.40}}, {"rose", "#d69eb3", {0.84, 0.62, 0.70}},
+      {"lilac", "#996bad", {0.60, 0.42, 0.68}}, {"slate", "#bdc7d4", {0.74, 0.78, 0.83}},
   };
   return rows;
 }

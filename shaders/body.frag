@@ -110,7 +110,8 @@ void main() {
 #ifdef FIELD
   // Lines must show on both ends of a map and leave its colours in between alone.
   float luma = dot(value, vec3(0.2126, 0.7152, 0.0722));
-  field_colour = mix(field_colour, luma > 0.25 ? 0.42 * field_colour : mix(field_colour, vec3(1.0), 0.42), 0.85 * line);
+  vec3 on_field = mix(mix(field_colour, vec3(1.0), 0.42), 0.42 * field_colour, smoothstep(0.17, 0.25, luma));
+  field_colour = mix(field_colour, on_field, 0.85 * line);
 #endif
 #ifdef CUTAWAY
   if (!front) line *= 0.6;

@@ -211,6 +211,12 @@ TEST_CASE("ticks of a bar are round numbers within the range") {
   }
 }
 
+TEST_CASE("vesicles that follow each other have colours that grey print tells apart") {
+  const auto grey = [](const render::Colour& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; };
+  for (std::size_t k = 0; k < render::body_colours().size(); ++k)
+    CHECK(std::abs(grey(render::body_colour(k)) - grey(render::body_colour(k + 1))) > 0.13);  // a third of the shading's range
+}
+
 TEST_CASE("colours are names or #rrggbb, others are answered with the nearest name") {
   CHECK(render::parse_colour("#ff8000") == render::Colour{1, 128 / 255.0, 0});
   CHECK(render::parse_colour("sky") == render::body_colour(1));
