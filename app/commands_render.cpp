@@ -63,7 +63,7 @@ int render(const Options& options) {
     if (!draw_in_processes(options, folder)) return stopped();
   }
   const FolderLock lock(folder, options.shard, options.shards);
-  const FrameReport report = render_frames(sources, folder, options, true);
+  const FrameReport report = render_frames(sources, folder, options);
   if (report.interrupted) return stopped();
   if (!options.quiet) {
     fmt::print("{}: {} frames drawn, {} kept\n", (folder / "frames").string(), report.drawn, report.kept);

@@ -94,7 +94,7 @@ int run(const Options& options) {
 
   // A simulation that stopped early is drawn as far as it went: that is where one looks for the reason.
   const sim::TrajectoryReader reader(trajectory);
-  const FrameReport frames = render_frames({{reader, settings}}, folder, options, state != FolderState::same);
+  const FrameReport frames = render_frames({{reader, settings}}, folder, options);
   if (frames.interrupted) {
     tell(fmt::format("interrupted; {} frames are in '{}'; the same command continues",
                frames.drawn + frames.kept, (folder / "frames").string()));

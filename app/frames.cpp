@@ -107,8 +107,25 @@ void remove_drafts(const fs::path& frames, const Options& options) {
   }
 }
 
+/// What a movie was made of, in a hidden file beside its frames: the frames alone do not tell how fast they were shown.
+fs::path record_of(const fs::path& movie) { return movie.parent_path() / "frames" / fmt::format(".{}", movie.filename().string()); }
+
+std::string movie_record(const Production& production, std::size_t frames, const render::MovieParameters& settings,
+                         const fs::path& movie) {
+  return fmt::format("{} frames at {:.17g} a second, {} bytes, {}\n", frames, settings.frame_rate, fs::file_size(movie),
+                     production.hash);
+}
+
+bool is_current_movie(const fs::path& movie, const Production& production, std::size_t frames,
+                      const render::MovieParameters& settings) {
+  const fs::path record = record_of(movie);
+  return fs::exists(movie) && fs::exists(record) &&
+         read_whole_file(record) == movie_record(production, frames, settings, movie);
+}
+
 void remove_movie(const fs::path& movie) {
   std::error_code error;
+  fs::remove(record_of(movie), error);
   fs::remove(movie, error);
   if (error) throw std::runtime_error(fmt::format("cannot replace '{}': {}", movie.string(), error.message()));
 }
@@ -142,8 +159,7 @@ struct Film {
 
 }  // namespace
 
-FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::path& folder, const Options& options,
-                          bool redo_movie) {
+FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::path& folder, const Options& options) {
   const Settings& settings = sources.front().settings;
   const MovieFormat& format = find_movie_format(settings.movie.format);
   const fs::path frames = folder / "frames", movie = folder / movie_name(format);
@@ -161,7 +177,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
   const bool all_kept = report.kept == static_cast<std::int64_t>(tasks.size());
   // A movie that is there is one of all these frames: it goes before the first of them does.
   if (!all_kept) remove_movie(movie);
-  if (all_kept && !redo_movie && fs::exists(movie)) report.movie = movie;
+  if (all_kept && is_current_movie(movie, production, times.size(), settings.movie)) report.movie = movie;
   const bool encode = options.shards == 1 && report.movie.empty();
   const auto finish_poster = [&] {
     if (options.shards == 1 && settings.movie.poster) report.poster = write_poster(folder, times, *settings.movie.poster);
@@ -211,7 +227,9 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
     auto image = std::make_shared<render::Image>(draw_picture(*studio, production, times[task.number]));
     film.attempt([&] { film.encoder->add(*image); });
     written();
-    const render::PngText text = picture_text(sources.front(), *studio, times[task.number], hash_of(production, times[task.number]));
+    // A picture by shaders under work is never taken for a finished one.
+    const std::string hash = options.shader_dir.empty() ? hash_of(production, times[task.number]) : "";
+    const render::PngText text = picture_text(sources.front(), *studio, times[task.number], hash);
     writing = std::async(std::launch::async, [image, path, text] { render::write_png(path, *image, text); });
     ++report.drawn;
   }
@@ -220,6 +238,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
   if (options.shards == 1) remove_frames(frames, static_cast<std::int64_t>(times.size()));
   film.attempt([&] {
     film.encoder->finish();
+    render::write_file(record_of(movie), movie_record(production, times.size(), settings.movie, movie));
     report.movie = movie;
   });
   finish_poster();

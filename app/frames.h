@@ -24,9 +24,8 @@ struct FrameReport {
 
 /// Draws this shard's missing frames into folder/frames and, with one shard only, the movie beside it. Several sources
 /// stand side by side; the movie lasts as long as the longest, the others stand still at their ends.
-/// redo_movie: encode it even if it is there and no frame was drawn.
-FrameReport render_frames(const std::vector<PictureSource>&, const std::filesystem::path& folder, const Options&,
-                          bool redo_movie);
+/// A movie that was made of the very same frames at the same rate is kept.
+FrameReport render_frames(const std::vector<PictureSource>&, const std::filesystem::path& folder, const Options&);
 
 /// The picture of one instant. Throws std::invalid_argument when the trajectory does not reach it.
 void render_still(const std::vector<PictureSource>&, double time, const std::filesystem::path&, const Options&);

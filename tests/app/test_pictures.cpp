@@ -33,6 +33,28 @@ TEST_CASE("frames between saved states are interpolated", "[commands]") {
   CHECK_FALSE(fs::exists(desk / "out/frames/000013.png"));
 }
 
+TEST_CASE("a movie is kept when it was made of the same frames at the same rate, and made anew otherwise", "[commands]") {
+  const Desk desk;
+  const auto run = [&] { REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"}).status == 0); };
+  const auto render = [&](const std::string& rate) {
+    REQUIRE(desk({"render", desk.file("out/trajectory.h5"), "-q", "--set", "movie.frame_rate=" + rate}).status == 0);
+  };
+  const fs::path movie = desk / "out/movie.mp4";
+  run();
+  const std::string made = support::read_file(movie);
+  const auto written = fs::last_write_time(movie);
+  run();
+  render("30");
+  CHECK(fs::last_write_time(movie) == written);  // by neither
+  render("10");
+  CHECK(support::read_file(movie) != made);
+  run();  // the scene says 30
+  CHECK(support::read_file(movie) == made);
+  support::write_file(movie, made + "x");  // somebody else's
+  run();
+  CHECK(support::read_file(movie) == made);
+}
+
 TEST_CASE("damaged or incomplete frames are drawn again", "[commands]") {
   const Desk desk;
   REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"}).status == 0);
