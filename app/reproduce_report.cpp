@@ -126,7 +126,12 @@ std::vector<fs::path> write_report(const Report& report, const fs::path& folder,
   fs::create_directories(folder, error);
   if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
   std::vector<fs::path> files;
-  if (report.figure) files = render::write_figure(*report.figure, folder / item);
+  if (report.figure) {
+    std::string tables;  // a page that shows the picture beside other numbers is found out
+    for (const TextTable& table : report.tables) tables += markdown_text(table);
+    files = render::write_figure(*report.figure, folder / item,
+                                 {{"Title", report.title}, {"Software", "tanktread " + version()}, {"tanktread:tables", tables}});
+  }
   for (std::size_t k = 0; k < report.tables.size(); ++k) {
     const bool first = k == 0 && !report.figure;
     const fs::path path = folder / (first ? fmt::format("{}.csv", item) : fmt::format("{}-{}.csv", item, k + 1));

@@ -68,7 +68,7 @@ std::string renumbered(const std::string& svg) {
 
 }  // namespace
 
-void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing) {
+void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text) {
   const double scale = drawing.dots_per_inch / 72;
   const int width = static_cast<int>(std::lround(drawing.width * scale));
   const int height = static_cast<int>(std::lround(drawing.height * scale));
@@ -88,7 +88,7 @@ void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing
       p[1] = static_cast<std::uint8_t>(v >> 8);
       p[2] = static_cast<std::uint8_t>(v);
     }
-  write_png(path, image);
+  write_png(path, image, text);
 }
 
 void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing) {

@@ -1,6 +1,7 @@
 // A drawing in points that becomes PNG, SVG and PDF by one and the same function.
 #pragma once
 
+#include "image.h"
 #include "palette.h"
 #include "text.h"
 
@@ -20,7 +21,7 @@ struct Drawing {
 
 /// Each is written by write_file(); throws std::runtime_error with path and reason.
 /// The same drawing gives the same bytes: no dates, no names of machines, text as paths.
-void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing);
+void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text = {});
 void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing);
 void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing);
 

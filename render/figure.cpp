@@ -120,10 +120,11 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
-std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem) {
+std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem,
+                                                const PngText& text) {
   const auto with = [&](const char* extension) { return std::filesystem::path(stem.string() + extension); };
   const std::vector<std::filesystem::path> paths{with(".png"), with(".svg"), with(".pdf"), with(".csv")};
-  write_drawing_png(paths[0], figure.drawing);
+  write_drawing_png(paths[0], figure.drawing, text);
   write_drawing_svg(paths[1], figure.drawing);
   write_drawing_pdf(paths[2], figure.drawing);
   write_file(paths[3], figure.csv);

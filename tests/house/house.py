@@ -88,7 +88,13 @@ def itself():
     page = "Call `tanktread rum x`, not tanktread rom.\n\n```\n$ ./tanktread.sh rem a\nbuild/release/tanktread run b | tanktread ram\n```\n`tanktread run`\n"
     expected = [(1, "rum"), (4, "rem"), (5, "run"), (5, "ram"), (7, "run")]
     found = commands_in(page)
-    return [] if found == expected else [f"commands of a page: {found}, not {expected}"]
+    wrong = [] if found == expected else [f"commands of a page: {found}, not {expected}"]
+    page = "## A\n| 1 |\n![a](a.png)\n### B\n| 2 |\n![b](b.png)\n### C\n| 3 |\n![c](c.png)\n"
+    texts = {"a.png": "caption\n| 1 |\n", "b.png": "| 1 |\n"}
+    findings = validation_findings(page, lambda picture: {"tanktread:tables": texts[picture]} if picture in texts else {})
+    if [("b.png" in f, "c.png" in f) for f in findings] != [(True, False), (False, True)]:
+        wrong.append(f"pictures of a page: {findings}")
+    return wrong
 
 
 def pages(program):
@@ -122,8 +128,45 @@ def pages(program):
     return findings
 
 
+def png_texts(path):
+    """Keys and texts of a PNG file's uncompressed text chunks."""
+    data = path.read_bytes()
+    texts = {}
+    at = 8
+    while at + 8 <= len(data):
+        length, kind = int.from_bytes(data[at:at + 4], "big"), data[at + 4:at + 8]
+        body = data[at + 8:at + 8 + length]
+        if kind in (b"tEXt", b"iTXt"):
+            key, text = body.split(b"\0", 1)
+            if kind == b"iTXt":  # two bytes on compression, then language and translated key
+                text = text[2:].split(b"\0", 2)[2]
+            texts[key.decode()] = text.decode()
+        at += 12 + length
+    return texts
+
+
+def validation_findings(page, text_of):
+    """Every picture of the page stands in a section with the very tables that were computed with it."""
+    findings = []
+    for section in re.split(r"^(?=#{2,3} )", page, flags=re.M):
+        for picture in re.findall(r"^!\[.*?\]\((\S+\.png)\)", section, re.M):
+            made = [line for line in text_of(picture).get("tanktread:tables", "").splitlines() if line.startswith("|")]
+            shown = [line for line in section.splitlines() if line.startswith("|")]
+            if not made:
+                findings.append(f"docs/validation.md: {picture} does not tell the tables that it was made with")
+            elif made != shown:
+                line = next((b or a for a, b in zip(made + [""], shown + [""]) if a != b), "")
+                findings.append(f"docs/validation.md: {picture} was made with other numbers than the page shows beside it: {line}")
+    return findings
+
+
+def validation():
+    page = ROOT / "docs" / "validation.md"
+    return validation_findings(page.read_text(), lambda picture: png_texts(page.parent / picture))
+
+
 def main():
-    checks = {"layering": layering, "reference": reference, "pages": pages, "itself": itself}
+    checks = {"validation": validation, "layering": layering, "reference": reference, "pages": pages, "itself": itself}
     findings = checks[sys.argv[1]](*sys.argv[2:])
     for finding in findings:
         print(finding)
