@@ -105,12 +105,26 @@ Vector apply_system(const Membrane& m, double c, const Vector& unknowns) {
 
 SpectralInverse spectral_inverse(const Membrane& m, double c) {
   const double alpha = m.material.alpha(), R = m.radius, kappa = m.material.bending_modulus, sigma = m.mean_stretched;
-  SpectralInverse inverse{alpha, {}, {}};
-  // On a plane a normal traction of wave number k moves it at 1/(4k), and bending answers a ripple with kappa_b k^4/2.
-  if (c != 0)
-    inverse.normal = mode_filter(m.waves, [&](double k) {
-      return 1 / (alpha + c * (kappa * k * k * k / 8 + sigma * k / 4)) - 1 / alpha;
-    });
+  SpectralInverse inverse{alpha, {}, {}, {}};
+  if (c != 0) {
+    // On a plane a normal traction of wave number k moves it at 1/(4k), and bending answers a ripple with kappa_b k^4/2.
+    const auto stiffness = [&](double k) { return c * (kappa * k * k * k / 8 + sigma * k / 4); };
+    inverse.normal = mode_filter(m.waves, [&](double k) { return 1 / (alpha + stiffness(k)) - 1 / alpha; });
+    // Below this the edge costs more than the iterations it saves. Fewer than four degrees are not enough, more save none.
+    constexpr double stiff = 4;
+    constexpr int edge_degrees = 4;
+    const int first = m.order() + 2 - edge_degrees;
+    if (first > 0 && stiffness(m.waves.numbers.back().maxCoeff()) > stiff * alpha) {
+      Matrix whole = truncated_overlap(m.waves, first);
+      const std::vector<Matrix> soft = mode_filter(m.waves, [&](double k) { return alpha / stiffness(k); }, first);
+      for (int n = first; n <= m.order() + 1; ++n) {
+        const int at = n * n - first * first, size = 2 * n + 1;
+        whole.block(at, at, size, size) += soft[n - first];
+      }
+      inverse.edge = -whole.llt().solve(Matrix::Identity(whole.rows(), whole.cols())) / alpha;
+      inverse.normal.resize(first);
+    }
+  }
   inverse.tension = mode_filter(m.waves, [&](double k) {
     const double n = std::sqrt(k * k * R * R + 0.25) - 0.5;
     if (n < 0.5) return R;
@@ -135,7 +149,9 @@ Coefficients precondition_velocity(const Membrane& m, const SpectralInverse& inv
   const Basis& basis = m.waves.basis;
   const Matrix values = basis.synthesize(resized(u, p + 1)).values;
   Coefficients along = basis.analyze(Matrix(values.cwiseProduct(m.waves.n).rowwise().sum()));
-  filter(along.values, inverse.normal, p + 1);
+  filter(along.values, inverse.normal, int(inverse.normal.size()) - 1);
+  auto last = along.values.bottomRows(inverse.edge.rows());
+  last = (inverse.edge * last).eval();
   const Vector less = basis.synthesize(along).values.col(0);
   out.values += basis.analyze(Matrix((m.waves.n.array().colwise() * less.array()).matrix())).values.topRows(nc);
   return out;

@@ -75,12 +75,16 @@ Vector system_rows(const Membrane&, const Coefficients& u, const Coefficients& v
 Vector apply_system(const Membrane&, double c, const Vector& unknowns);
 
 /// The spectral preconditioner of section 3.5, corrected, and with the wave numbers k of the surface in place of n/R:
-///   velocity: 1/alpha along the membrane, 1/(alpha + c (kappa_b k^3/8 + sigma k/4)) along its normal
+///   velocity: 1/alpha along the membrane, 1/(alpha + g) along its normal, g = c (kappa_b k^3/8 + sigma k/4)
 ///   tension:  R/l_n, l_n = n(n+1)(2n^2+2n-1)/((2n-1)(2n+1)(2n+3)), with n(n+1) = (kR)^2, l_0 = 1.
+/// Velocities end at degree p, so that of normal fields of degree p and p + 1 only about half is there, and 1/(alpha + g) is
+/// far from the inverse of alpha + N g N^T (N: psi -> psi n, cut off). Where the highest waves are stiff, the Woodbury
+/// formula 1/alpha - N (alpha/g + N^T N)^{-1} N^T / alpha is taken whole for the last degrees.
 struct SpectralInverse {
   double alpha;
-  std::vector<Matrix> normal;   ///< what a normal velocity has less than 1/alpha; empty for c = 0
-  std::vector<Matrix> tension;  ///< both per degree
+  std::vector<Matrix> normal;   ///< what a normal velocity has less than 1/alpha, per degree; empty for c = 0
+  Matrix edge;                  ///< the same for all degrees beyond those, as one matrix; may be empty
+  std::vector<Matrix> tension;  ///< per degree
 };
 SpectralInverse spectral_inverse(const Membrane&, double c);
 Coefficients precondition_velocity(const Membrane&, const SpectralInverse&, const Coefficients& u);

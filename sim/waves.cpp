@@ -47,4 +47,19 @@ SurfaceWaves surface_waves(Plans& plans, const Coefficients& position) {
   return waves;
 }
 
+Matrix truncated_overlap(const SurfaceWaves& w, int first) {
+  const int p = w.basis.order() - 1, nc = coefficient_count(p), below = first * first;
+  const int count = coefficient_count(p + 1) - below;
+  Matrix edge = Matrix::Zero(coefficient_count(p + 1), count);
+  edge.bottomRows(count).setIdentity();
+  const Matrix psi = w.basis.synthesize({p + 1, std::move(edge)}).values;
+  Matrix overlap = Matrix::Zero(count, count);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Matrix kept =
+        w.basis.analyze(Matrix(psi.array().colwise() * w.n.col(axis).array())).values.topRows(nc);
+    overlap.selfadjointView<Eigen::Lower>().rankUpdate(kept.transpose());
+  }
+  return overlap.selfadjointView<Eigen::Lower>();
+}
+
 }  // namespace sim

@@ -21,13 +21,18 @@ struct SurfaceWaves {
 
 SurfaceWaves surface_waves(Plans&, const Coefficients& position);
 
-/// Per degree the matrix that multiplies each mode by gain(k).
+/// Per degree, from `first` on, the matrix that multiplies each mode by gain(k).
 template <class Gain>
-std::vector<Matrix> mode_filter(const SurfaceWaves& w, Gain&& gain) {
+std::vector<Matrix> mode_filter(const SurfaceWaves& w, Gain&& gain, int first = 0) {
   std::vector<Matrix> blocks;
-  for (std::size_t n = 0; n < w.modes.size(); ++n)
+  for (std::size_t n = first; n < w.modes.size(); ++n)
     blocks.push_back(w.modes[n] * w.numbers[n].unaryExpr(gain).asDiagonal() * w.modes[n].transpose());
   return blocks;
 }
+
+/// What truncation leaves of normal fields at the upper edge of the spectrum: psi n with psi of degrees `first` to p + 1 is
+/// cut off at degree p, and this is the inner product of what is left, (n psi_a)_p . (n psi_b)_p, over the parameter sphere.
+/// Degrees well below p are whole, and would give the unit matrix; of degrees p and p + 1 about half is left.
+Matrix truncated_overlap(const SurfaceWaves&, int first);
 
 }  // namespace sim

@@ -252,21 +252,56 @@ TEST_CASE("an impossible step fails with a sentence and leaves its input as it w
   CHECK(serialised(d) == before);
 }
 
-TEST_CASE("GMRES takes at most 30 iterations whatever the order and the viscosity contrast") {
-  // Dt = 0.21, zero guess, relative residual 1e-8, a membrane under tension: the bound of an independent implementation
-  // with a diagonal preconditioner is 21 to 24.
-  for (const int p : {8, 12, 16})
-    for (const double lambda : {1.0, 4.0, 10.0}) {
-      Plans plans;
-      const Coefficients x = test::surface("prolate", 0.85, p);
-      Coefficients tension{p, Matrix::Zero(coefficient_count(p), 1)};
-      tension.values(0, 0) = 3 * std::sqrt(4 * test::pi);
-      const Membrane m = freeze_membrane(plans, {lambda, 0.01, 0}, x, 3, 0, tension);
-      const std::vector flows{test::shear()};
-      const Solve s = solve_system(m, 0.21, forcing(m, flows, 0, Vec3::Zero()), test::at_rest(p), 1e-8);
-      CHECK(s.converged);
-      CHECK(s.iterations <= 30);
-    }
+namespace {
+
+/// Iterations for Dt = 0.21, zero guess, relative residual 1e-8, a membrane under tension.
+int iterations(int p, double lambda) {
+  Plans plans;
+  const Coefficients x = test::surface("prolate", 0.85, p);
+  Coefficients tension{p, Matrix::Zero(coefficient_count(p), 1)};
+  tension.values(0, 0) = 3 * std::sqrt(4 * test::pi);
+  const Membrane m = freeze_membrane(plans, {lambda, 0.01, 0}, x, 3, 0, tension);
+  const std::vector flows{test::shear()};
+  const Solve s = solve_system(m, 0.21, forcing(m, flows, 0, Vec3::Zero()), test::at_rest(p), 1e-8);
+  CHECK(s.converged);
+  return s.iterations;
+}
+
+}  // namespace
+
+TEST_CASE("GMRES takes at most 30 iterations, and hardly more with the order, whatever the viscosity contrast") {
+  // The bound of an independent implementation with a diagonal preconditioner is 21 to 24. By how much the count grows
+  // depends on the shape; this one is at rest, and as far from a sphere as the paper's.
+  for (const double lambda : {1.0, 4.0, 10.0}) {
+    const int low = iterations(8, lambda), high = iterations(24, lambda);
+    CHECK(std::max(low, high) <= 30);
+    CHECK(high < low * 4.0 / 3);
+  }
+}
+
+TEST_CASE("on a sphere the velocity preconditioner inverts the stiffness of the normal, truncated as velocities are") {
+  // alpha u + P_p [n g(k) P_{p+1} (n.u)] for bending and tension, with c so large that the highest waves move 1000 times
+  // slower: the whole edge of the spectrum counts. On a sphere n has degree 1, and all below the edge is exact too.
+  const int p = 10;
+  const double c = 100, sigma = 3;
+  Plans plans;
+  const Coefficients x = initial_position(test::vesicle("sphere", 1, p));
+  Coefficients tension{p, Matrix::Zero(coefficient_count(p), 1)};
+  tension.values(0, 0) = sigma * std::sqrt(4 * test::pi);
+  const Membrane m = freeze_membrane(plans, {4, 0.01, 0}, x, 2, 0, tension);
+  const std::vector<Matrix> g =
+      mode_filter(m.waves, [&](double k) { return c * (0.01 * k * k * k / 8 + sigma * k / 4); });
+  const Coefficients u{p, Matrix::Random(coefficient_count(p), 3)};
+  const Basis& basis = m.waves.basis;
+  Coefficients along = basis.analyze(
+      Matrix(basis.synthesize(resized(u, p + 1)).values.cwiseProduct(m.waves.n).rowwise().sum()));
+  for (int n = 0; n <= p + 1; ++n)
+    along.values.middleRows(n * n, 2 * n + 1) = (g[n] * along.values.middleRows(n * n, 2 * n + 1)).eval();
+  const Vector force = basis.synthesize(along).values.col(0);
+  Coefficients stiff = resized(basis.analyze(Matrix(m.waves.n.array().colwise() * force.array())), p);
+  stiff.values += m.material.alpha() * u.values;
+  const Coefficients back = precondition_velocity(m, spectral_inverse(m, c), stiff);
+  CHECK((back.values - u.values).norm() < 1e-11 * u.values.norm());  // rounding times the stiffness
 }
 
 TEST_CASE("the modes of a sphere have the wave numbers sqrt(n(n+1))/R, those of a long prolate differ by direction") {
