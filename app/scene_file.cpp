@@ -147,8 +147,6 @@ struct Reader {
                                                                v.order, n.source_order));
     if (n.repulsion_strength > 0 && !n.near_rule)
       fail_at(source_of(*table, "near_rule"), "the repulsion acts where the near rule does: it needs near_rule = true");
-    if (n.label_order > 0 && n.label_order < 4)
-      fail_at(source_of(*table, "label_order"), fmt::format("'label_order' must be at least 4, or \"auto\", not {}", n.label_order));
   }
 
   template <class P>

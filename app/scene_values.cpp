@@ -116,7 +116,7 @@ void read_value(const sim::Parameter& p, const toml::node& node, int& value) {
   }
   if (!node.is_integer()) wrong_type(p, node, p.zero_is_auto ? "\"auto\" or a whole number" : "a whole number");
   const std::int64_t number = node.as_integer()->get();
-  check_range(p, node, static_cast<double>(number));
+  if (!(p.zero_is_auto && number == 0)) check_range(p, node, static_cast<double>(number));
   if (number != static_cast<int>(number)) fail_at(node.source(), fmt::format("'{}' is too large: {}", p.name, number));
   value = static_cast<int>(number);
 }

@@ -68,7 +68,7 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
     w.source_basis.push_back(&plans.basis(p, smooth_order(p, options.source_order)));
     w.target_basis.push_back(&plans.basis(p, p + 1));
     rotations.push_back(&plans.rotation(p));
-    w.dual = w.dual || materials[i].viscosity_contrast != 1;
+    w.dual.push_back(materials[i].viscosity_contrast != 1);
   }
   w.sources.resize(n);
   w.coarse_sources.resize(n);
@@ -100,7 +100,7 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
           if (nearest.inside) throw std::domain_error(fmt::format("vesicle {} crosses vesicle {}", i, j));
           if (nearest.distance < options.near_spacings * s.spacing[source]) {
             pair.near.push_back(k);
-            pair.rows.push_back(near_row(*rotations[j], positions[j], x, nearest, options.near_order));
+            pair.rows.push_back(near_row(*rotations[j], positions[j], x, nearest, options.near_order, w.dual[j]));
             pair.nearest.push_back(nearest);
             continue;
           }
@@ -156,27 +156,27 @@ std::vector<Coefficients> induced_velocity(const Interaction& w, std::span<const
   parallel_for(n, [&](int j) {
     fine[j].force = w.source_basis[j]->synthesize(densities[j].force).values;
     coarse[j].force = w.target_basis[j]->synthesize(densities[j].force).values;
-    if (!w.dual) return;
+    if (!w.dual[j]) return;
     fine[j].dual = w.source_basis[j]->synthesize(densities[j].dual).values;
     coarse[j].dual = w.target_basis[j]->synthesize(densities[j].dual).values;
   });
   std::vector<Coefficients> result(n);
   parallel_for(n, [&](int i) {
     Matrix velocity = Matrix::Zero(w.targets[i].rows(), 3);
-    const auto add = [&](const std::vector<int>& list, const Sources& sources, const Samples& samples) {
+    const auto add = [&](const std::vector<int>& list, const Sources& sources, const Samples& samples, bool dual) {
       if (list.empty()) return;
       Matrix sum = Matrix::Zero(Eigen::Index(list.size()), 3);
-      add_direct_sum(sources, samples.force, w.dual ? &samples.dual : nullptr, w.targets[i](list, Eigen::all), sum);
+      add_direct_sum(sources, samples.force, dual ? &samples.dual : nullptr, w.targets[i](list, Eigen::all), sum);
       for (std::size_t k = 0; k < list.size(); ++k) velocity.row(list[k]) += sum.row(Eigen::Index(k));
     };
     for (int j = 0; j < n; ++j) {
       if (i == j) continue;
       const PairPlan& pair = w.pairs[i][j];
-      add(pair.coarse, w.coarse_sources[j], coarse[j]);
-      add(pair.fine, w.sources[j], fine[j]);
+      add(pair.coarse, w.coarse_sources[j], coarse[j], w.dual[j]);
+      add(pair.fine, w.sources[j], fine[j], w.dual[j]);
       for (std::size_t k = 0; k < pair.near.size(); ++k) {
         Vec3 v = apply_row(pair.rows[k].single, densities[j].force.values);
-        if (w.dual) v += apply_row(pair.rows[k].dual, densities[j].dual.values);
+        if (w.dual[j]) v += apply_row(pair.rows[k].dual, densities[j].dual.values);
         velocity.row(pair.near[k]) += v.transpose();
       }
     }

@@ -51,7 +51,7 @@ struct Interaction {
   std::vector<Sources> sources, coarse_sources;
   std::vector<Matrix> targets;                ///< points x 3
   std::vector<std::vector<PairPlan>> pairs;   ///< [target vesicle][source vesicle]
-  bool dual = false;                          ///< some viscosity contrast differs from 1
+  std::vector<char> dual;                     ///< by source vesicle: its viscosity contrast differs from 1
 };
 
 /// Throws std::domain_error when a target lies inside another vesicle.

@@ -168,13 +168,6 @@ Vector precondition(const Membrane& m, const SpectralInverse& inverse, const Vec
   return packed({precondition_velocity(m, inverse, r.velocity), precondition_tension(inverse, r.tension)});
 }
 
-Coefficients forcing(const Membrane& m, std::span<const FlowParameters> flows, double time, const Vec3& gravity,
-                     const Coefficients& displacement) {
-  Coefficients r = m.bases.field.analyze(background_velocity(flows, time, m.geometry.x.value));
-  r.values += m.layers.single.apply(known_force(m, gravity, displacement)).values;
-  return r;
-}
-
 Solve solve_system(const Membrane& m, double c, const Coefficients& r, const Motion& guess, double tolerance) {
   const Vector b = packed({r, divergence(m, r)});
   const SpectralInverse inverse = spectral_inverse(m, c);

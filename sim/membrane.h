@@ -92,11 +92,6 @@ Coefficients precondition_tension(const SpectralInverse&, const Coefficients& si
 /// Both, packed.
 Vector precondition(const Membrane&, const SpectralInverse&, const Vector&);
 
-/// Right-hand side r of (39a) as velocity coefficients: background flow at time t at the frozen positions, the bending
-/// force of the history h (see known_force), and buoyancy.
-Coefficients forcing(const Membrane&, std::span<const FlowParameters>, double time, const Vec3& gravity,
-                     const Coefficients& displacement = {});
-
 struct Solve {
   Motion motion;
   int iterations = 0;
@@ -105,7 +100,6 @@ struct Solve {
 };
 /// Solves (39) from a guess. On an exact sphere the constant tension is a null vector; it stays what the guess has.
 Solve solve_system(const Membrane&, double c, const Coefficients& forcing, const Motion& guess, double tolerance);
-
 
 /// Eq. (43): the tension that makes (r + S f_sigma) / alpha free of divergence, -P S f_sigma(sigma) = P r.
 Solve solve_tension(const Membrane&, const Coefficients& r, const Motion& guess, double tolerance);

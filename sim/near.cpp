@@ -135,19 +135,20 @@ Eigen::ArrayXXd dual_scalar(const GradedGrid& g, const Eigen::ArrayXXd& inverse)
 }  // namespace
 
 PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
-                  NearOrder order) {
+                  NearOrder order, bool with_double) {
   const GradedGrid g = graded_grid(plan, x, target, nearest, order);
-  const int p = g.p;
+  const int p = g.p, nc = coefficient_count(p);
   const Eigen::ArrayXXd inverse = g.rr.rsqrt(), s0 = g.area * inverse / (8 * pi), s2 = s0 * inverse.square();
-  const Eigen::ArrayXXd d5 = dual_scalar(g, inverse);
+  const Eigen::ArrayXXd d5 = with_double ? dual_scalar(g, inverse) : Eigen::ArrayXXd();
 
   // The transposed synthesis of the 12 components.
-  PointRow row{Matrix(coefficient_count(p), 6), Matrix(coefficient_count(p), 6)};
+  PointRow row{Matrix(nc, 6), with_double ? Matrix(nc, 6) : Matrix()};
   int block = 0;
   for (int c = 0; c < 3; ++c)
     for (int e = c; e < 3; ++e, ++block) {
       const Eigen::ArrayXXd rce = g.r[c] * g.r[e];
       for (const bool dual : {false, true}) {
+        if (dual && !with_double) continue;
         const Matrix kernel = dual ? Matrix(d5 * rce) : c == e ? Matrix(s0 + s2 * rce) : Matrix(s2 * rce);
         const Matrix spectrum = kernel * g.fourier.transpose();  // nt x (2p+1)
         auto out = (dual ? row.dual : row.single).col(block);
@@ -159,7 +160,7 @@ PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& t
       }
     }
   row.single = plan.from_pole(row.single, g.theta0, g.phi0);
-  row.dual = plan.from_pole(row.dual, g.theta0, g.phi0);
+  if (with_double) row.dual = plan.from_pole(row.dual, g.theta0, g.phi0);
   return row;
 }
 

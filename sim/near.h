@@ -27,9 +27,10 @@ NearestPoint nearest_point(const Coefficients& position, const Vec3& target, con
 
 /// Rows of (4) with mu = 1 and of (5) without (1 - lambda) for one target: (p+1)^2 x 6 each, blocks xx, xy, xz, yy, yz, zz.
 struct PointRow {
-  Matrix single, dual;
+  Matrix single, dual;  ///< dual: empty unless asked for
 };
-PointRow near_row(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder);
+PointRow near_row(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder,
+                  bool with_double);
 
 /// The same applied to densities of degree <= p at once, for a point that is wanted once: S force + D dual (nullptr: none).
 Vec3 near_velocity(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder,

@@ -30,7 +30,7 @@ struct Parameter {
   std::span<const std::string_view> choices = {};  ///< allowed words; empty: any
   std::string_view catalogue = {};  ///< the allowed words are the names of this catalogue ("flows", "shapes", ...)
   bool required = false;            ///< a table without this key is refused
-  bool zero_is_auto = false;        ///< integers: 0 is written and read as "auto"
+  bool zero_is_auto = false;        ///< integers: 0, whatever the minimum, is written and read as "auto"
   std::string_view when_absent = {};  ///< optionals: what holds when the key is not given
   std::string_view refused = {};      ///< not empty: the key is reserved; giving it is an error with this sentence
   bool is_path = false;               ///< a file name
@@ -195,7 +195,7 @@ void visit(P& p, V&& v) {
               .maximum = 1, .exclusive_minimum = true}, p.gmres_tolerance);
   v(Parameter{.name = "source_order", .unit = "", .meaning = "order of the singular quadrature; auto: p + 1", .minimum = 0,
               .maximum = 256, .zero_is_auto = true}, p.source_order);
-  v(Parameter{.name = "label_order", .unit = "", .meaning = "order of the material labels; auto: max(2p, 24)", .minimum = 0,
+  v(Parameter{.name = "label_order", .unit = "", .meaning = "order of the material labels; auto: max(2p, 24)", .minimum = 4,
               .maximum = 128, .zero_is_auto = true}, p.label_order);
   v(Parameter{.name = "implicit_tension", .unit = "",
               .meaning = "the force of the tension follows the new position; false: that of the old one, as in the paper"},

@@ -91,7 +91,7 @@ void solve(benchmark::State& state) {
   const Coefficients x = initial_position(prolate(p, 10));
   const Membrane m = freeze_membrane(plans, {10, 0.01, 0}, x, 3, 0);
   const std::vector flows{test::shear()};
-  const Coefficients r = forcing(m, flows, 0, Vec3::Zero());
+  const Coefficients r = test::forcing(m, flows, Vec3::Zero());
   int iterations = 0;
   for (auto _ : state) iterations = solve_system(m, 0.1, r, test::at_rest(p), 1e-10).iterations;
   state.counters["iterations"] = iterations;

@@ -55,6 +55,13 @@ inline sim::Coefficients smooth_field(int order, int degree, int fields, unsigne
   return c;
 }
 
+/// The right-hand side of (39a) for a vesicle by itself at time 0.
+inline sim::Coefficients forcing(const sim::Membrane& m, std::span<const sim::FlowParameters> flows, const sim::Vec3& gravity) {
+  sim::Coefficients r = m.bases.field.analyze(sim::background_velocity(flows, 0, m.geometry.x.value));
+  r.values += m.layers.single.apply(sim::known_force(m, gravity)).values;
+  return r;
+}
+
 inline sim::Coefficients constant_field(int order, const sim::Vec3& value) {
   sim::Coefficients c{order, sim::Matrix::Zero(sim::coefficient_count(order), 3)};
   c.values.row(0) = std::sqrt(4 * pi) * value.transpose();

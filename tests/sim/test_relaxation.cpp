@@ -61,7 +61,7 @@ TEST_CASE("two modes of a nearly spherical vesicle relax at the exact rates, wit
   Plans plans;
   for (const double lambda : {0.3, 1.0, 6.0}) {
     const Membrane m = freeze_membrane(plans, {lambda, 1, 0}, x, 3, 2 * p);
-    const Solve s = solve_system(m, 0, forcing(m, {}, 0, Vec3::Zero()), test::at_rest(p), 1e-12);
+    const Solve s = solve_system(m, 0, test::forcing(m, {}, Vec3::Zero()), test::at_rest(p), 1e-12);
     REQUIRE(s.converged);
     const Matrix u = m.bases.field.synthesize(s.motion.velocity).values;
     // Rate of a_n: -(kappa_b / 2 mu R^3) k_n (n(n+1) + s), k_n = (n-1)n(n+1)(n+2)/D_n; s from sum (n-1)(n+2) a_n a_n' = 0.

@@ -19,7 +19,7 @@ Instant instant(const Coefficients& x, const Material& material, std::vector<Flo
                 const Vec3& gravity = Vec3::Zero(), int source_order = 0) {
   Plans plans;
   const Membrane m = freeze_membrane(plans, material, x, 2, source_order);
-  const Solve s = solve_system(m, 0, forcing(m, flows, 0, gravity), test::at_rest(x.order), 1e-13);
+  const Solve s = solve_system(m, 0, test::forcing(m, flows, gravity), test::at_rest(x.order), 1e-13);
   REQUIRE(s.converged);
   return {m.geometry, m.bases.field.synthesize(s.motion.velocity).values,
           m.bases.field.synthesize(s.motion.tension).values, s.iterations};
@@ -86,7 +86,7 @@ TEST_CASE("a drop without forces has the normal velocity 5/(2 lambda + 3) n.E.n"
   f.kind = "extension";
   for (const double lambda : {0.2, 3.0}) {
     const Membrane m = freeze_membrane(plans, {lambda, 0, 0}, x, 2, 0);
-    const Coefficients r = forcing(m, std::vector{f}, 0, Vec3::Zero());
+    const Coefficients r = test::forcing(m, std::vector{f}, Vec3::Zero());
     const auto row = [&](const Vector& y) {
       const Coefficients u{p, y.reshaped(coefficient_count(p), 3)};
       return Vector((m.material.alpha() * u.values - (1 - lambda) * m.layers.dual.apply(u).values).reshaped());
@@ -159,7 +159,7 @@ TEST_CASE("a membrane in fluid at rest keeps its area, and the power of its bend
   const Coefficients x = test::potato(12);
   Plans plans;
   const Membrane m = freeze_membrane(plans, {3, 1, 0}, x, 3, 24);
-  const Solve s = solve_system(m, 0, forcing(m, {}, 0, Vec3::Zero()), test::at_rest(12), 1e-12);
+  const Solve s = solve_system(m, 0, test::forcing(m, {}, Vec3::Zero()), test::at_rest(12), 1e-12);
   CHECK(divergence(m, s.motion.velocity).values.norm() < 1e-9 * s.motion.velocity.values.norm());
   const Matrix u = m.bases.field.synthesize(s.motion.velocity).values;
   const auto power = [&](const Matrix& f) { return integrate(m.geometry, f.cwiseProduct(u).rowwise().sum()); };
@@ -262,7 +262,7 @@ int iterations(int p, double lambda) {
   tension.values(0, 0) = 3 * std::sqrt(4 * test::pi);
   const Membrane m = freeze_membrane(plans, {lambda, 0.01, 0}, x, 3, 0, tension);
   const std::vector flows{test::shear()};
-  const Solve s = solve_system(m, 0.21, forcing(m, flows, 0, Vec3::Zero()), test::at_rest(p), 1e-8);
+  const Solve s = solve_system(m, 0.21, test::forcing(m, flows, Vec3::Zero()), test::at_rest(p), 1e-8);
   CHECK(s.converged);
   return s.iterations;
 }
