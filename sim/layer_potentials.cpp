@@ -31,7 +31,7 @@ struct LayerPotentials::Plan {
 
   Plan(int order, int source_order);
   void rows_of_tile(int latitude, int tile, const Coefficients& x, bool with_double, double* rows) const;
-  LayerMatrices project(const std::vector<double>& rows, bool with_double) const;
+  LayerMatrices project(const RawVector<double>& rows, bool with_double) const;
   int column_stride() const { return round_up(coefficient_count(p), lanes); }
 };
 
@@ -112,10 +112,21 @@ void kernels(const Lane* target, const SourcePoint& y, double weight, bool with_
   out[11] = d * q22;
 }
 
+void transpose(Lane* block) {
+  const Lane a = __builtin_shufflevector(block[0], block[1], 0, 4, 2, 6);
+  const Lane b = __builtin_shufflevector(block[0], block[1], 1, 5, 3, 7);
+  const Lane c = __builtin_shufflevector(block[2], block[3], 0, 4, 2, 6);
+  const Lane d = __builtin_shufflevector(block[2], block[3], 1, 5, 3, 7);
+  block[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  block[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  block[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  block[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
 }  // namespace
 
 /// Rows of the collocation operator for the four targets (theta_latitude, phi of `tile`), in the original frame:
-/// rows[target longitude][component][nm], strides column_stride() and 12 column_stride().
+/// rows[target longitude][component][nm], strides column_stride() and 12 or (S alone) 6 column_stride().
 void LayerPotentials::Plan::rows_of_tile(int latitude, int tile, const Coefficients& x, bool with_double,
                                          double* rows) const {
   const int nc = coefficient_count(p), half = source.half, used = with_double ? components : components / 2, orbits = int(source.orbits.size());
@@ -261,32 +272,34 @@ void LayerPotentials::Plan::rows_of_tile(int latitude, int tile, const Coefficie
       multiply({n, n, w[n].sine_t.data(), n, down.data(), down.data()}, used,
                in_pole_frame.get() + centre - components, back.get() + centre - components);
   }
-  const int stride = column_stride();
   for (int n = 0; n <= p; ++n)
-    for (int m = 0; m <= n; ++m) {
+    for (int m = 1; m <= n; ++m) {
       Lane* c = back.get() + components * coefficient_index(n, m);
       Lane* sn = back.get() + components * coefficient_index(n, -m);
       for (int k = 0; k < used; ++k) {
-        Lane row_c = c[k], row_s = sn[k];
-        if (m > 0) {
-          row_c = c[k] * cosine[m] - sn[k] * sine[m];
-          row_s = sn[k] * cosine[m] + c[k] * sine[m];
-        }
-        for (int lane = 0; lane < lanes && tile * lanes + lane < longitudes; ++lane) {
-          double* row = rows + (std::ptrdiff_t(lane) * components + k) * stride;
-          row[coefficient_index(n, m)] = row_c[lane];
-          if (m > 0) row[coefficient_index(n, -m)] = row_s[lane];
-        }
+        const Lane turned_c = c[k] * cosine[m] - sn[k] * sine[m];
+        sn[k] = sn[k] * cosine[m] + c[k] * sine[m];
+        c[k] = turned_c;
       }
+    }
+  // From a target a lane to a coefficient a lane, so that rows are written along their length.
+  const int stride = column_stride(), targets = std::min(lanes, longitudes - tile * lanes);
+  for (int nm = 0; nm < stride; nm += lanes)
+    for (int k = 0; k < used; ++k) {
+      Lane block[lanes];
+      for (int e = 0; e < lanes; ++e) block[e] = nm + e < nc ? back.get()[components * (nm + e) + k] : Lane{};
+      transpose(block);
+      for (int lane = 0; lane < targets; ++lane)
+        __builtin_memcpy(rows + (std::ptrdiff_t(lane) * used + k) * stride + nm, &block[lane], sizeof(Lane));
     }
 }
 
 /// Projection of all rows on the target harmonics, column block by column block: 48 columns are 12 vectors.
-LayerMatrices LayerPotentials::Plan::project(const std::vector<double>& rows, bool with_double) const {
+LayerMatrices LayerPotentials::Plan::project(const RawVector<double>& rows, bool with_double) const {
   const int nc = coefficient_count(p), stride = column_stride(), half = target.half, orbits = int(target.orbits.size());
   const int used = with_double ? components : components / 2, vectors = used * stride / lanes;
   const int blocks = (vectors + components - 1) / components;
-  const std::ptrdiff_t row_length = std::ptrdiff_t(components) * stride;
+  const std::ptrdiff_t row_length = std::ptrdiff_t(used) * stride;
   LayerMatrices result;
   for (LayerMatrix* m : {&result.single, &result.dual}) {
     if (m == &result.dual && !with_double) continue;
@@ -302,6 +315,10 @@ LayerMatrices LayerPotentials::Plan::project(const std::vector<double>& rows, bo
 #pragma omp for schedule(static)
     for (int block = 0; block < blocks; ++block) {
       const int first = block * components, width = std::min(components, vectors - first);
+      const auto row_at = [&](int latitude, int longitude) {
+        return rows.data() + (std::ptrdiff_t(latitude) * target.nlon + longitude) * row_length + first * lanes;
+      };
+      constexpr int ahead = 2;  // rows lie too far apart for the processor to foresee the next
       for (int i = 0; i < half; ++i) {
         const int members = target.mirror(i) == i ? 1 : 2;
         for (int l = 0; l < orbits; ++l) {
@@ -315,7 +332,10 @@ LayerMatrices LayerPotentials::Plan::project(const std::vector<double>& rows, bo
               }
               const int lat_index = lat == 0 ? i : target.mirror(i);
               const double weight = target.weight[lat_index] * pi / (q + 1);
-              const double* in = rows.data() + (std::ptrdiff_t(lat_index) * target.nlon + j) * row_length + first * lanes;
+              const double* in = row_at(lat_index, j);
+              if (l + ahead < orbits)
+                if (const int next = target.orbits[l + ahead].index[member]; next >= 0)
+                  for (int c = 0; c < width; c += 2) __builtin_prefetch(row_at(lat_index, next) + c * lanes);
               for (int c = 0; c < width; ++c) {
                 Lane v;
                 __builtin_memcpy(&v, in + c * lanes, sizeof v);
@@ -352,8 +372,8 @@ LayerMatrices LayerPotentials::assemble(const Coefficients& position, bool with_
     throw std::invalid_argument("LayerPotentials: the position must have 3 fields of at most the plan's degree");
   const Coefficients x = resized(position, plan.p);
   const int longitudes = plan.target.nlon, tiles = (longitudes + lanes - 1) / lanes, tasks = plan.target.nlat * tiles;
-  const std::ptrdiff_t row_length = std::ptrdiff_t(components) * plan.column_stride();
-  std::vector<double> rows(std::size_t(plan.target.nlat) * longitudes * row_length);
+  const std::ptrdiff_t row_length = std::ptrdiff_t(with_double ? components : components / 2) * plan.column_stride();
+  RawVector<double> rows(std::size_t(plan.target.nlat) * longitudes * row_length);
 #pragma omp parallel for schedule(static)
   for (int task = 0; task < tasks; ++task) {
     const int latitude = task / tiles, tile = task % tiles;

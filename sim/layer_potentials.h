@@ -9,6 +9,7 @@
 #pragma once
 
 #include "basis.h"
+#include "raw_memory.h"
 
 #include <memory>
 
@@ -18,7 +19,7 @@ namespace sim {
 struct LayerMatrix {
   int order = -1;                      ///< p; -1: not assembled
   int stride = 0;                      ///< doubles from one row of a block to the next
-  std::vector<double> values;          ///< [row][block][column], blocks padded to `stride` columns
+  RawVector<double> values;            ///< [row][block][column], blocks padded to `stride` columns
   Coefficients apply(const Coefficients& density) const;  ///< 3 fields in, 3 fields out
 };
 
