@@ -2,6 +2,8 @@
 #include "figure_kinds.h"
 #include "surface.h"
 
+#include "sim/geometry.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -263,11 +265,8 @@ Figure draw_inclination(const FigureInput& input) {
     all[v].name = v < input.labels.size() ? input.labels[v] : all.size() > 1 ? fmt::format("vesicle {}", v) : "";
     for (const sim::State& state : input.states) {
       if (v >= state.vesicles.size()) continue;
-      const Eigen::Matrix3d m = volume_moments(state.vesicles[v].position).second;
-      // longest axis of the moments in the x-z plane; z up, positive toward +z
-      const double angle = 0.5 * std::atan2(2 * m(0, 2), m(0, 0) - m(2, 2));
       all[v].times.push_back(input.time_factor * state.time);
-      all[v].values.push_back(angle * 180 / std::numbers::pi);
+      all[v].values.push_back(sim::inclination(volume_moments(state.vesicles[v].position).second) * 180 / std::numbers::pi);
     }
   }
   std::string csv = csv_of(all);

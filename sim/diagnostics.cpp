@@ -18,8 +18,7 @@ VesicleMeasures measure(Plans& plans, const VesicleState& v, double area0, doubl
   m.reduced_volume = reduced_volume(whole.area, whole.volume);
   m.center = whole.centroid;
   const auto& M = whole.moments;
-  m.inclination_deg = 0.5 * std::atan2(2 * M(0, 2), M(0, 0) - M(2, 2)) * 180 / std::numbers::pi;
-  if (m.inclination_deg <= -90) m.inclination_deg += 180;
+  m.inclination_deg = inclination(M) * 180 / std::numbers::pi;
   const Vec3 eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M, Eigen::EigenvaluesOnly).eigenvalues();
   m.axes = (5 * eigenvalues.reverse() / whole.volume).cwiseSqrt();
   m.energy = whole.h_squared / (4 * std::numbers::pi);

@@ -99,6 +99,11 @@ AreaVolume area_volume(const Basis& basis, const Coefficients& position) {
   return {weight.dot(n.rowwise().norm()), weight.dot(dot(y, n)) / 3};
 }
 
+double inclination(const Eigen::Matrix3d& moments) {
+  const double angle = 0.5 * std::atan2(2 * moments(0, 2), moments(0, 0) - moments(2, 2));
+  return angle <= -std::numbers::pi / 2 ? angle + std::numbers::pi : angle;
+}
+
 double reduced_volume(double area, double volume) {
   return volume / (4 * pi / 3 * std::pow(area / (4 * pi), 1.5));
 }

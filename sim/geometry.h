@@ -46,6 +46,10 @@ struct AreaVolume {
 };
 AreaVolume area_volume(const Basis&, const Coefficients& position);
 
+/// Angle of the longest axis in the (x, z) plane of a shear flow, from x towards z, by second moments M:
+/// atan2(2 M_xz, M_xx - M_zz)/2 in (-pi/2, pi/2].
+double inclination(const Eigen::Matrix3d& moments);
+
 /// nu = V / ((4 pi/3) (A/4 pi)^(3/2)).
 double reduced_volume(double area, double volume);
 
