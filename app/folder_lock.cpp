@@ -7,13 +7,16 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 namespace app {
 
 bool FolderLock::File::take(bool shared) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
   for (;;) {
     descriptor = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0)
@@ -22,7 +25,10 @@ bool FolderLock::File::take(bool shared) {
       const int error = errno;
       if (error != EWOULDBLOCK) return true;  // a file system without locks: nothing can be known there
       ::close(std::exchange(descriptor, -1));
-      return false;
+      // A shard that ends has the file to itself for a moment, to see whether it is the last (release()).
+      if (!shared || std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      continue;
     }
     // The holder before us may have removed the file between our open and our lock.
     struct stat ours{}, named{};

@@ -1,10 +1,15 @@
 // `tanktread render` and what `run` draws: frames, movies, stills and what stands on them.
+#include "app/folder_lock.h"
 #include "desk.h"
 #include "render/image.h"
 #include "sim/trajectory.h"
 
 #include <catch2/catch.hpp>
+#include <fcntl.h>
 #include <set>
+#include <sys/file.h>
+#include <thread>
+#include <unistd.h>
 
 using Catch::Contains;
 using commands::Desk;
@@ -88,11 +93,30 @@ TEST_CASE("without ffmpeg, or with a broken one, the frames are kept and a sente
   CHECK_FALSE(fs::exists(desk / "b/movie.mp4.tmp"));
 }
 
+TEST_CASE("a shard waits for another that is just letting go of the folder, but not for a writer of the whole", "[commands]") {
+  const support::TemporaryFolder folder;
+  const std::string file = (folder.path() / ".tanktread.lock").string();
+  const int held = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);  // what a shard does at its end
+  REQUIRE(held >= 0);
+  REQUIRE(::flock(held, LOCK_EX | LOCK_NB) == 0);
+  std::thread last([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    ::unlink(file.c_str());
+    ::close(held);
+  });
+  CHECK_NOTHROW(app::FolderLock(folder.path(), 1, 2));
+  last.join();
+  const app::FolderLock whole(folder.path());
+  CHECK_THROWS_WITH(app::FolderLock(folder.path(), 1, 2), Contains("another process is writing"));
+}
+
 TEST_CASE("processes draw the very frames and movie that one draws alone", "[commands]") {
   const Desk desk;
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
   REQUIRE(desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--style", "ghost", "-j", "1"}).status == 0);
-  REQUIRE(desk({"render", desk.file("t.h5"), "-o", desk.file("b"), "--style", "ghost", "-j", "3"}).status == 0);
+  const Outcome three = desk({"render", desk.file("t.h5"), "-o", desk.file("b"), "--style", "ghost", "-j", "3"});
+  INFO(three.err);
+  REQUIRE(three.status == 0);
   for (const char* name : {"frames/000000.png", "frames/000004.png", "frames/000005.png", "movie.mp4"})
     CHECK(support::read_file(desk / "a" / name) == support::read_file(desk / "b" / name));
 }
