@@ -110,7 +110,8 @@ void give_range(render::Legend& legend, const render::ViewParameters& view, std:
   legend.low = low;
   legend.high = high;
   legend.colours = render::colour_table(map);
-  legend.mirrored = map.kind == render::MapKind::diverging;
+  // Only a range about zero puts zero where the map turns.
+  legend.mirrored = map.kind == render::MapKind::diverging && std::abs(low + high) <= 1e-9 * (high - low);
   const double slack = 0.005 * (high - low);
   legend.below = least < low - slack;
   legend.above = most > high + slack;

@@ -210,6 +210,7 @@ void share_legend(std::vector<Painting>& paintings, bool given) {
     all.high = std::max(std::abs(all.low), std::abs(all.high));
     all.low = -all.high;
   }
+  all.mirrored = all.mirrored && all.low == -all.high;
   for (Painting& p : paintings) p.legend = all;
 }
 
