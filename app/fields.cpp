@@ -140,7 +140,7 @@ void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& s
   view.field_range.clear();
   std::vector<double> all = values;
   give_range(legend, view, all, false);
-  legend.mirrored = false;  // whole bodies have one value each: no lines
+  legend.mirrored = false;  // whole bodies have one value each: no dots
   for (const double value : values) p.bodies.push_back(render::mapped(legend.colours, (value - legend.low) / (legend.high - legend.low)));
   p.legend = legend;
 }

@@ -29,20 +29,15 @@ double widest_tick(const Font& font, double size, const Legend& legend) {
   return widest;
 }
 
-double tick_step(double low, double high) {
-  const double rough = (high - low) / 5, power = std::pow(10, std::floor(std::log10(rough)));
-  double step = 10 * power;
-  for (const double factor : {5.0, 2.5, 2.0, 1.0})
-    if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
-  return step;
-}
-
 }  // namespace
 
 std::vector<double> bar_ticks(double low, double high) {
   std::vector<double> ticks;
   if (!(high > low)) return {low};
-  const double step = tick_step(low, high);
+  const double rough = (high - low) / 5, power = std::pow(10, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.5, 2.0, 1.0})
+    if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
   for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push_back(k == 0 ? 0 : k * step);
   return ticks;
 }

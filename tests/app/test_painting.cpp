@@ -83,25 +83,7 @@ field = "tension"
 
 TEST_CASE("dots mark what is below zero: a range that is not about zero has none") {
   const auto mirrored = [](const std::string& range) {
-    const support::TemporaryFolder folder;
-    const app::Settings settings = app::parse_scene(R"([flow]
-kind = "shear"
-[time]
-end = 0.1
-step = 0.1
-[[vesicle]]
-shape = "prolate"
-reduced_volume = 0.9
-order = 4
-[view]
-style = "field"
-field = "normal-velocity"
-field_range = )" + range + "\n", "s.toml", ".");
-    sim::SimulationOptions options;
-    options.trajectory = (folder / "t.h5").string();
-    sim::simulate(settings.scene, options, {});
-    const sim::TrajectoryReader reader(options.trajectory);
-    return app::prepare_pictures({{reader, settings}}).panels.front().painting.legend->mirrored;
+    return legend_of("normal-velocity", 1, "field_range = " + range + "\ncolour_map = \"blue-red\"\n").mirrored;
   };
   CHECK(mirrored("[-0.1, 0.1]"));
   CHECK_FALSE(mirrored("[-0.03, 0.08]"));
