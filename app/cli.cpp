@@ -271,6 +271,10 @@ int main(int argc, char** argv) {
   } catch (const std::system_error& error) {
     // The reader of a pipe has seen enough, as `head` does: nothing to complain of.
     if (error.code() == std::errc::broken_pipe) return 0;
+    if (error.code() == std::errc::interrupted) {
+      tell("interrupted");
+      return interrupted_status;
+    }
     tell(error.what());
   } catch (const std::exception& error) {
     tell(error.what());

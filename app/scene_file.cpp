@@ -1,5 +1,6 @@
 #include "scene_file.h"
 
+#include "interrupt.h"
 #include "catalogues.h"
 #include "scene_overrides.h"
 #include "scene_values.h"
@@ -110,7 +111,7 @@ struct Reader {
   }
   void check(const toml::table& table, sim::VesicleParameters& p) const {
     if (p.area && p.radius) fail_at(source_of(table, "radius"), "give 'area' or 'radius', not both");
-    if (p.axis.norm() == 0) fail_at(source_of(table, "axis"), "'axis' must not be the zero vector");
+    if (p.axis && p.axis->norm() == 0) fail_at(source_of(table, "axis"), "'axis' must not be the zero vector");
     for (const auto& term : p.coefficients)
       if (term[0] < 0 || term[0] != std::floor(term[0]) || term[1] != std::floor(term[1]) || std::abs(term[1]) > term[0])
         fail_at(source_of(table, "coefficients"),
@@ -253,7 +254,7 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
     fail_at(source_of(*root["movie"].as_table(), "time_per_frame"),
             fmt::format("{:.3g} frames are too many; 'time_per_frame' must be longer", frames));
   if (use == SceneUse::simulate && !settings.scene.placements.empty()) try {
-      settings.scene = sim::placed(std::move(settings.scene));
+      settings.scene = sim::placed(std::move(settings.scene), interrupted);
     } catch (const std::invalid_argument& error) {
       fail_at(root.get("placement")->source(), error.what());
     }

@@ -111,7 +111,7 @@ struct VesicleParameters {
   std::optional<double> area;            ///< not given: 4 pi, except where axes set the size
   std::optional<double> radius;          ///< area radius, instead of area
   Vec3 center = Vec3::Zero();
-  Vec3 axis = Vec3::UnitX();             ///< symmetry axis of the shape; the grid's pole lies on it; any length but 0
+  std::optional<Vec3> axis;              ///< symmetry axis of the shape; the grid's pole lies on it; any length but 0
   int order = 8;                         ///< p
   double viscosity_contrast = 1;         ///< lambda = inside / outside
   double bending_modulus = 0.01;         ///< kappa_b of E = kappa_b oint H^2 dA (twice Helfrich's)
@@ -138,8 +138,9 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "radius", .unit = "length", .meaning = "the shape is scaled to the area of a sphere of this radius",
               .minimum = 0, .exclusive_minimum = true, .when_absent = "see area"}, p.radius);
   v(Parameter{.name = "center", .unit = "length", .meaning = "where the shape's origin lies"}, p.center);
-  v(Parameter{.name = "axis", .unit = "", .meaning = "direction of the shape's symmetry axis and of the grid's pole"},
-    p.axis);
+  v(Parameter{.name = "axis", .unit = "",
+              .meaning = "direction of the shape's symmetry axis (of a table: its z axis) and of the grid's pole",
+              .when_absent = "[1, 0, 0]; a table keeps its own axes"}, p.axis);
   v(Parameter{.name = "order", .unit = "", .meaning = "p, highest degree of the spherical harmonics", .minimum = 2,
               .maximum = 64}, p.order);
   v(Parameter{.name = "viscosity_contrast", .unit = "", .meaning = "lambda, viscosity inside / outside", .minimum = 0,
@@ -156,6 +157,10 @@ void visit(P& p, V&& v) {
               .when_absent = "that of the file, whatever it holds"}, p.checksum);
 }
 
+/// Lengths that follow the vesicles where none are given, in area radii R0 of the smallest.
+inline constexpr double default_gap_floor = 1e-3, default_repulsion_range = 0.05, default_placement_gap = 0.05,
+                        default_tube_radius = 3;
+
 struct NumericsParameters {
   bool correction = true;
   std::string reparametrization = "auto";
@@ -171,8 +176,8 @@ struct NumericsParameters {
   int near_latitudes = 32;
   int near_longitudes = 32;
   double repulsion_strength = 0;
-  double repulsion_range = 0.05;
-  double gap_floor = 1e-3;
+  std::optional<double> repulsion_range;
+  std::optional<double> gap_floor;
   double tail_warning = 0.15;
   double step_area_bound = 0.02;
   double step_energy_bound = 0.5;
@@ -192,7 +197,7 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "aliasing_tolerance", .unit = "", .meaning = "relative aliasing error that Algorithm 1 allows",
               .minimum = 0, .maximum = 1, .exclusive_minimum = true}, p.aliasing_tolerance);
   v(Parameter{.name = "gmres_tolerance", .unit = "", .meaning = "relative residual of each linear solve", .minimum = 0,
-              .maximum = 1, .exclusive_minimum = true}, p.gmres_tolerance);
+              .maximum = 1e-2, .exclusive_minimum = true}, p.gmres_tolerance);
   v(Parameter{.name = "source_order", .unit = "", .meaning = "order of the singular quadrature; auto: p + 1", .minimum = 0,
               .maximum = 256, .zero_is_auto = true}, p.source_order);
   v(Parameter{.name = "label_order", .unit = "", .meaning = "order of the material labels; auto: max(2p, 24)", .minimum = 4,
@@ -215,9 +220,9 @@ void visit(P& p, V&& v) {
               .meaning = "traction strength exp(-gap/range) that pushes membranes apart where the near rule acts; 0: none", .minimum = 0},
     p.repulsion_strength);
   v(Parameter{.name = "repulsion_range", .unit = "length", .meaning = "range of the repulsion", .minimum = 0,
-              .exclusive_minimum = true}, p.repulsion_range);
+              .exclusive_minimum = true, .when_absent = "0.05 R0 of the smallest vesicle"}, p.repulsion_range);
   v(Parameter{.name = "gap_floor", .unit = "length", .meaning = "two membranes nearer than this stop the run",
-              .minimum = 0}, p.gap_floor);
+              .minimum = 0, .when_absent = "0.001 R0 of the smallest vesicle"}, p.gap_floor);
   v(Parameter{.name = "tail_warning", .unit = "",
               .meaning = "warn of an unresolved shape when this share of the mean curvature's spectrum lies in its tail",
               .minimum = 0, .maximum = 1}, p.tail_warning);
@@ -249,9 +254,9 @@ struct PlacementParameters {
   std::string kind = "lattice";
   int count = 1;
   double volume_fraction = 0.05;
-  double radius = 3;                ///< tube
+  std::optional<double> radius;     ///< tube
   double jitter = 0;                ///< lattice: share of its spacing that a centre may move
-  double gap = 0.05;                ///< least distance between two membranes
+  std::optional<double> gap;        ///< least distance between two membranes
   std::string orientation = "as-given";
   int seed = 1;
   Vec3 center = Vec3::Zero();
@@ -267,10 +272,11 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "volume_fraction", .unit = "", .meaning = "of the box or tube, which sets its size or length",
               .minimum = 0, .maximum = 0.74, .exclusive_minimum = true}, p.volume_fraction);
   v(Parameter{.name = "radius", .unit = "length", .meaning = "of the tube, whose axis is x", .minimum = 0,
-              .exclusive_minimum = true}, p.radius);
+              .exclusive_minimum = true, .when_absent = "3 R0 of the vesicle"}, p.radius);
   v(Parameter{.name = "jitter", .unit = "", .meaning = "random shift of lattice centres, as a share of the lattice spacing",
               .minimum = 0, .maximum = 0.5}, p.jitter);
-  v(Parameter{.name = "gap", .unit = "length", .meaning = "least distance between two membranes", .minimum = 0}, p.gap);
+  v(Parameter{.name = "gap", .unit = "length", .meaning = "least distance between two membranes", .minimum = 0,
+              .when_absent = "0.05 R0 of the vesicle"}, p.gap);
   v(Parameter{.name = "orientation", .unit = "", .meaning = "axis of each copy", .choices = orientation_names},
     p.orientation);
   v(Parameter{.name = "seed", .unit = "", .meaning = "of the random numbers; the same seed gives the same places",

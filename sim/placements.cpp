@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <functional>
 #include <fstream>
 #include <numbers>
 #include <random>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 namespace sim {
 
@@ -30,6 +30,7 @@ Vec3 random_direction(std::mt19937_64& random) {
 /// A surface about the origin: volume, and the radii of the spheres about the origin that hold it and that it holds.
 struct Extent {
   double volume, reach, core;
+  double radius;  ///< of the sphere of the same area
 };
 Extent extent(const VesicleParameters& v) {
   VesicleParameters centred = v;
@@ -37,8 +38,11 @@ Extent extent(const VesicleParameters& v) {
   const Coefficients x = initial_position(centred);
   const Basis basis(x.order, 2 * x.order + 8);
   const Vector distance = basis.synthesize(x).values.rowwise().norm();
-  return {area_volume(basis, x).volume, distance.maxCoeff(), distance.minCoeff()};
+  const AreaVolume size = area_volume(basis, x);
+  return {size.volume, distance.maxCoeff(), distance.minCoeff(), std::sqrt(size.area / (4 * pi))};
 }
+
+double gap_of(const PlacementParameters& p, const Extent& e) { return p.gap.value_or(default_placement_gap * e.radius); }
 
 /// Positions that have been taken, and whether another one keeps its distance from all of them.
 struct Occupied {
@@ -60,16 +64,33 @@ struct Occupied {
   }
 };
 
+/// Refuses what cannot be placed at random in a room (the region of the centres, and what reaches beyond it).
+void require_room(const PlacementParameters& p, const Extent& e, double room) {
+  // Random insertion jams at shares of 0.38 (spheres) to 0.45 (ellipsoids). Each counts with half the gap about it.
+  constexpr double fullest = 0.5;
+  const double gap = gap_of(p, e), equivalent = std::cbrt(3 * e.volume / (4 * pi));
+  const double filled = p.count * 4 * pi / 3 * std::pow(equivalent + gap / 2, 3) / room;
+  if (p.count > 1 && filled > fullest)
+    throw std::invalid_argument(fmt::format(
+        "{} vesicles of radius {:.3g} with gaps of {:.3g} cannot be placed at random at a volume fraction of {}: with half the gap "
+        "about each they would fill {:.0f} % of the room; give a smaller volume_fraction or gap",
+        p.count, e.radius, gap, p.volume_fraction, 100 * filled));
+}
+
 /// Copies at random points of a region, one after another, each free of those before.
 std::vector<VesicleParameters> insert_at_random(const PlacementParameters& p, const VesicleParameters& original,
+                                                const Extent& size, const StopQuestion& stop,
                                                 const std::function<Vec3(std::mt19937_64&)>& point) {
   std::mt19937_64 random(std::uint64_t(p.seed));
-  Occupied occupied{p.gap, extent(original), {}, {}, {}};
+  const double gap = gap_of(p, size);
+  Occupied occupied{gap, size, {}, {}, {}};
   std::vector<VesicleParameters> all;
   constexpr int tries = 2000;
   while (int(all.size()) < p.count) {
     bool found = false;
     for (int attempt = 0; attempt < tries && !found; ++attempt) {
+      if (stop && stop())
+        throw std::system_error(std::make_error_code(std::errc::interrupted), "while vesicles were being placed");
       VesicleParameters v = original;
       v.center = p.center + point(random);
       if (p.orientation == "random") v.axis = random_direction(random);
@@ -82,13 +103,13 @@ std::vector<VesicleParameters> insert_at_random(const PlacementParameters& p, co
     }
     if (!found)
       throw std::invalid_argument(fmt::format(
-          "only {} of {} vesicles could be placed at a volume fraction of {} with gaps of {}", all.size(), p.count,
-          p.volume_fraction, p.gap));
+          "only {} of {} vesicles could be placed at a volume fraction of {} with gaps of {:.3g}", all.size(), p.count,
+          p.volume_fraction, gap));
   }
   return all;
 }
 
-std::vector<VesicleParameters> lattice(const PlacementParameters& p, const VesicleParameters& original) {
+std::vector<VesicleParameters> lattice(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion&) {
   const int side = int(std::ceil(std::cbrt(double(p.count)) - 1e-9));
   const double spacing = std::cbrt(extent(original).volume / p.volume_fraction);
   std::mt19937_64 random(std::uint64_t(p.seed));
@@ -104,26 +125,30 @@ std::vector<VesicleParameters> lattice(const PlacementParameters& p, const Vesic
   return all;
 }
 
-std::vector<VesicleParameters> box(const PlacementParameters& p, const VesicleParameters& original) {
-  const double side = std::cbrt(p.count * extent(original).volume / p.volume_fraction);
-  return insert_at_random(p, original, [side](std::mt19937_64& random) {
+std::vector<VesicleParameters> box(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion& stop) {
+  const Extent e = extent(original);
+  const double side = std::cbrt(p.count * e.volume / p.volume_fraction);
+  require_room(p, e, std::pow(side + 2 * e.reach + gap_of(p, e), 3));
+  return insert_at_random(p, original, e, stop, [side](std::mt19937_64& random) {
     return Vec3(side * (Vec3(uniform(random), uniform(random), uniform(random)) - Vec3::Constant(0.5)));
   });
 }
 
-std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleParameters& original) {
+std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion& stop) {
   const Extent e = extent(original);
-  if (p.radius <= e.reach)
-    throw std::invalid_argument(fmt::format("a tube of radius {} is narrower than a vesicle, which reaches {:.3g} from its centre",
-                                            p.radius, e.reach));
-  const double length = p.count * e.volume / p.volume_fraction / (pi * p.radius * p.radius);
-  return insert_at_random(p, original, [&, length](std::mt19937_64& random) {
-    const double r = (p.radius - e.reach) * std::sqrt(uniform(random)), f = 2 * pi * uniform(random);
+  const double radius = p.radius.value_or(default_tube_radius * e.radius);
+  if (radius <= e.reach)
+    throw std::invalid_argument(fmt::format("a tube of radius {:.3g} is narrower than a vesicle, which reaches {:.3g} from its centre",
+                                            radius, e.reach));
+  const double length = p.count * e.volume / p.volume_fraction / (pi * radius * radius);
+  require_room(p, e, pi * std::pow(radius + gap_of(p, e) / 2, 2) * (length + 2 * e.reach + gap_of(p, e)));
+  return insert_at_random(p, original, e, stop, [&, length](std::mt19937_64& random) {
+    const double r = (radius - e.reach) * std::sqrt(uniform(random)), f = 2 * pi * uniform(random);
     return Vec3(length * (uniform(random) - 0.5), r * std::cos(f), r * std::sin(f));
   });
 }
 
-std::vector<VesicleParameters> from_file(const PlacementParameters& p, const VesicleParameters& original) {
+std::vector<VesicleParameters> from_file(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion&) {
   std::ifstream in(p.file);
   if (!in) throw std::invalid_argument(fmt::format("cannot read the table of centres '{}'", p.file));
   std::vector<VesicleParameters> all;
@@ -141,8 +166,8 @@ std::vector<VesicleParameters> from_file(const PlacementParameters& p, const Ves
                                               row.size()));
     VesicleParameters v = original;
     v.center = p.center + Vec3(row[0], row[1], row[2]);
-    if (row.size() == 6) v.axis = {row[3], row[4], row[5]};
-    if (!(v.axis.norm() > 0)) throw std::invalid_argument(fmt::format("{}:{}: the axis has no direction", p.file, number));
+    if (row.size() == 6) v.axis = Vec3(row[3], row[4], row[5]);
+    if (v.axis && !(v.axis->norm() > 0)) throw std::invalid_argument(fmt::format("{}:{}: the axis has no direction", p.file, number));
     all.push_back(std::move(v));
   }
   if (all.empty()) throw std::invalid_argument(fmt::format("{}: no centres in it", p.file));
@@ -161,14 +186,14 @@ const std::vector<CatalogueRow<PlacementFunction>>& placement_catalogue() {
   return table;
 }
 
-Scene placed(Scene scene) {
+Scene placed(Scene scene, const StopQuestion& stop) {
   for (const PlacementParameters& p : scene.placements) {
     if (scene.vesicles.empty()) throw std::invalid_argument("a placement needs a vesicle to copy");
     const VesicleParameters original = scene.vesicles.back();
     scene.vesicles.pop_back();
     const auto* row = find_row(placement_catalogue(), p.kind);
     if (!row) throw std::invalid_argument("unknown placement '" + p.kind + "'");
-    for (VesicleParameters& v : row->function(p, original)) scene.vesicles.push_back(std::move(v));
+    for (VesicleParameters& v : row->function(p, original, stop)) scene.vesicles.push_back(std::move(v));
   }
   scene.placements.clear();
   return scene;

@@ -213,7 +213,8 @@ Coefficients initial_position(const VesicleParameters& v) {
     const double area = v.area ? *v.area : v.radius ? 4 * pi * *v.radius * *v.radius : default_area;
     c.values *= std::sqrt(area / size.area);
   }
-  const Vec3 z = v.axis.normalized();
+  // Shapes of the catalogue are made about z; so is a table, which says itself how it lies.
+  const Vec3 z = v.axis ? v.axis->normalized() : v.shape == "file" ? Vec3(Vec3::UnitZ()) : Vec3(Vec3::UnitX());
   Vec3 y = Vec3::UnitY() - z * z[1];
   if (y.norm() < 1e-8) y = Vec3::UnitZ();
   y.normalize();

@@ -17,7 +17,7 @@ sim::VesicleState treading(double a, double b, double degrees, double w) {
   v.shape = "ellipsoid";
   v.axes = sim::Vec3(a, 0.8, b);
   const double t = degrees * pi / 180;
-  v.axis = {std::cos(t), 0, std::sin(t)};
+  v.axis = sim::Vec3(std::cos(t), 0, std::sin(t));
   v.order = 8;
   sim::VesicleState state;
   state.position = sim::initial_position(v);

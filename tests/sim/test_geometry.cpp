@@ -93,7 +93,7 @@ TEST_CASE("second moments give back the semi-axes, the centre and the inclinatio
   v.axes = Vec3(1.5, 0.9, 0.7);
   v.order = 6;
   v.center = {3, -2, 5};
-  v.axis = {std::cos(0.4), 0, std::sin(0.4)};
+  v.axis = Vec3(std::cos(0.4), 0, std::sin(0.4));
   VesicleState s;
   s.position = initial_position(v);
   s.velocity = test::constant_field(6, {3, 0, 4});
@@ -108,7 +108,7 @@ TEST_CASE("second moments give back the semi-axes, the centre and the inclinatio
 
 TEST_CASE("the grid's pole lies on the shape's axis") {
   VesicleParameters v = test::vesicle("prolate", 0.85, 8);
-  v.axis = {0, 2, 0};
+  v.axis = Vec3(0, 2, 0);
   const Matrix pole = sample_points(initial_position(v), Vec3::UnitZ().transpose());
   CHECK((pole - Eigen::RowVector3d(0, 1.676919960, 0)).norm() < 1e-8);
 }

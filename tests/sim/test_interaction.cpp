@@ -330,11 +330,11 @@ TEST_CASE("placements put as many vesicles as asked at the volume fraction asked
     Plans plans;
     const Gap gap = smallest_gap(plans, x);
     CHECK_FALSE(gap.crossing);
-    if (row.name != "lattice") CHECK(gap.distance >= p.gap * (1 - 1e-6));
+    if (row.name != "lattice") CHECK(gap.distance >= default_placement_gap * (1 - 1e-6));
   }
 }
 
-TEST_CASE("a volume fraction that cannot be placed is refused with how many could") {
+TEST_CASE("a volume fraction that cannot be placed is refused, at once where it is hopeless, else with how many could") {
   Scene scene = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
   PlacementParameters p;
   p.kind = "box";
@@ -342,6 +342,34 @@ TEST_CASE("a volume fraction that cannot be placed is refused with how many coul
   p.volume_fraction = 0.7;
   scene.placements = {p};
   CHECK_THROWS_WITH(placed(scene), Catch::Contains("of 60 vesicles could be placed"));
+  scene.placements[0].count = 5000;
+  int asked = 0;
+  CHECK_THROWS_WITH(placed(scene, [&] { return ++asked > 0; }), Catch::Contains("cannot be placed at random"));
+  CHECK(asked == 0);
+}
+
+TEST_CASE("a search for places ends when it is told to stop") {
+  Scene scene = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
+  PlacementParameters p;
+  p.kind = "box";
+  p.count = 60;
+  p.volume_fraction = 0.3;
+  scene.placements = {p};
+  int asked = 0;
+  CHECK_THROWS_AS(placed(scene, [&] { return ++asked == 5; }), std::system_error);
+  CHECK(asked == 5);
+}
+
+TEST_CASE("gaps of placements are in radii unless they are given") {
+  Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 4), 0.1, 1);
+  PlacementParameters p;
+  p.kind = "box";
+  p.count = 6;
+  scene.placements = {p};
+  const Scene large = placed(scene);
+  scene.vesicles[0].radius = 1e-6;
+  const Scene small = placed(scene);
+  for (std::size_t k = 0; k < 6; ++k) CHECK((small.vesicles[k].center * 1e6 - large.vesicles[k].center).norm() < 1e-9);
 }
 
 TEST_CASE("repulsion pushes two vesicles apart with opposite forces, and not at all when it is off") {

@@ -13,7 +13,7 @@ Coefficients bumpy_sphere(int order, const std::vector<std::pair<int, double>>& 
   v.shape = "harmonics";
   for (const auto& [n, a] : modes) v.coefficients.push_back({double(n), 0, a});
   v.order = order;
-  v.axis = {0, 0, 1};
+  v.axis = Vec3(0, 0, 1);
   return initial_position(v);
 }
 
