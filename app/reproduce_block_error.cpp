@@ -73,7 +73,7 @@ Report reproduce_block_error(const Effort& effort) {
       const sim::State now = sim::evaluate(setting, d);
       for (std::size_t k = 0; k < 2; ++k) d.vesicles[k].motion = {now.vesicles[k].velocity, now.vesicles[k].tension};
       const auto advance = [&](const char* scheme) {
-        return sim::find_row(sim::scheme_catalogue(), scheme)->function(setting, d, paper_step);
+        return sim::find_row(sim::scheme_catalogue(), scheme)->function({setting, d, paper_step, scene.flows});
       };
       const sim::Advance exact = advance("globally-implicit");
       const auto error_of = [&](const sim::Advance& block) {

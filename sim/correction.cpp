@@ -47,4 +47,23 @@ Correction area_volume_correction(Plans& plans, const Coefficients& position, co
   return c;
 }
 
+Correction volume_correction(Plans& plans, const Coefficients& position, const Geometry& g, double area, double volume) {
+  const int p = position.order;
+  const Basis& basis = plans.basis(p, measure_order(p));
+  const Coefficients along = basis.analyze(g.n);
+  Correction c{{p, Matrix::Zero(coefficient_count(p), 3)}, 0, 0, 0, false};
+  double amount = 0;
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    c.shift.values = amount * along.values;
+    const AreaVolume now = area_volume(basis, {p, position.values + c.shift.values});
+    c.area = now.area;
+    c.volume = now.volume;
+    if (!(std::abs(now.volume / volume - 1) > 2e-14)) break;
+    amount += (volume - now.volume) / now.area;  // d(volume) = area d(amount)
+  }
+  c.converged = std::abs(c.area / area - 1) < 1e-5 && std::abs(c.volume / volume - 1) < 1e-9;
+  c.largest = basis.synthesize(c.shift).values.rowwise().norm().maxCoeff();
+  return c;
+}
+
 }  // namespace sim

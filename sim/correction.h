@@ -6,9 +6,6 @@
 
 namespace sim {
 
-/// Order of the grid on which areas and volumes are measured everywhere, so that all parts mean the same number.
-constexpr int measure_order(int p) { return 2 * p + 8; }
-
 struct Correction {
   Coefficients shift;    ///< to be added to the position, degree p
   double largest = 0;    ///< longest shift of a grid point
@@ -16,9 +13,13 @@ struct Correction {
   bool converged = false;
 };
 
-/// On a sphere n and H n coincide; the minimum-norm solution is taken.
+/// Near a sphere n and H n nearly coincide; the minimum-norm solution is taken.
 Correction area_volume_correction(Plans&, const Coefficients& position, double area, double volume);
 /// The same with the geometry of the position on the grid of measure_order().
 Correction area_volume_correction(Plans&, const Coefficients& position, const Geometry&, double area, double volume);
+
+/// For a sphere, whose area and volume cannot be had both: x += a n restores the volume; the area is then right to the square
+/// of what it is out of round, and must be so to 1e-5.
+Correction volume_correction(Plans&, const Coefficients& position, const Geometry&, double area, double volume);
 
 }  // namespace sim

@@ -2,6 +2,8 @@
 
 #include "norms.h"
 
+#include <algorithm>
+
 namespace sim {
 
 Coefficients mean_curvature(Plans& plans, const Coefficients& position, int grid_order) {
@@ -21,7 +23,11 @@ int upsampling_rate(Plans& plans, const Coefficients& position, double tolerance
 }
 
 double curvature_tail(const Basis& basis, const Geometry& geometry) {
-  return tail_share(basis.analyze(Matrix(geometry.H)), 3 * basis.order() / 4 + 1);
+  // Near a sphere there is hardly a spectrum beside the mean: what is a hundredth of that needs no resolution of its own.
+  constexpr double negligible = 1e-2;
+  const Coefficients h = basis.analyze(Matrix(geometry.H));
+  const double whole = std::max(band_norm(h, 1, h.order), negligible * modular_norm(h, 0));
+  return whole > 0 ? band_norm(h, 3 * basis.order() / 4 + 1, h.order) / whole : 0;
 }
 
 }  // namespace sim

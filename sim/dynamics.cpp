@@ -13,6 +13,11 @@ void transfer_vesicle(Archive& ar, D& v) {
                   &v.saved_velocity})
     ar(*c);
   ar(v.tracers);
+  for (auto* frame : {&v.frame, &v.frame_before, &v.carrier})
+    for (auto* x : {&frame->motion.translation, &frame->motion.rotation, &frame->motion.centre})
+      for (int k = 0; k < 3; ++k) ar((*x)[k]);
+  for (auto* frame : {&v.frame, &v.frame_before, &v.carrier})
+    for (int k = 0; k < 9; ++k) ar(frame->drift(k));
   ar(v.area), ar(v.volume), ar(v.energy), ar(v.tail), ar(v.upsampling), ar(v.upsampling_due), ar(v.high_share);
   ar(v.relabelled), ar(v.labels_laid), ar(v.labels_laid_time);
 }

@@ -11,8 +11,10 @@ namespace sim {
 
 struct VesicleDynamics {
   Coefficients position;        ///< x_n
-  Coefficients displacement;    ///< w = x_n - x_{n-1} in the present parametrisation, before the correction of x_n
+  Coefficients displacement;    ///< w = x_n, before its correction, less x_{n-1} as `carrier` carries it to t_n; in the present parametrisation
   Motion motion;                ///< velocity and tension of the last solve: the next guess
+  Frame frame, frame_before;    ///< the motion of its shape at t_n and t_{n-1}
+  Frame carrier;                ///< the mean one of the frame of the last step
   Coefficients labels;
   Matrix tracers;               ///< parameters of the tracer dots
   Coefficients saved_position;  ///< of the last saved state, in the present parametrisation

@@ -34,6 +34,46 @@ double time_factor(const FlowParameters& f, double time) {
   return 1;
 }
 
+namespace {
+
+bool has_strength(const FlowParameters& f) {
+  const auto* row = find_row(flow_catalogue(), f.kind);
+  // Two points tell every flow of the catalogue that is not zero: none vanishes at both.
+  return row && (row->function(f, Vec3(1, 2, 3)).norm() > 0 || row->function(f, Vec3(-3, 1, 0.5)).norm() > 0);
+}
+
+}  // namespace
+
+double oscillation(const FlowParameters& f) {
+  return f.time_factor == "oscillating" && has_strength(f) ? f.frequency : 0;
+}
+
+bool moves(const FlowParameters& f, double end) {
+  if (f.time_factor == "step" && (f.from >= f.until || f.from >= end || f.until <= 0)) return false;
+  return has_strength(f);
+}
+
+double next_switch(std::span<const FlowParameters> flows, double time) {
+  double next = unlimited;
+  for (const FlowParameters& f : flows)
+    if (f.time_factor == "step" && f.from < f.until)
+      for (const double t : {f.from, f.until})
+        if (t > time) next = std::min(next, t);
+  return next;
+}
+
+std::vector<FlowParameters> acting_flows(std::span<const FlowParameters> flows, double from, double to) {
+  std::vector<FlowParameters> acting;
+  for (FlowParameters f : flows) {
+    if (f.time_factor == "step") {
+      if (time_factor(f, (from + to) / 2) == 0) continue;
+      f.time_factor = "constant";
+    }
+    acting.push_back(f);
+  }
+  return acting;
+}
+
 Matrix background_velocity(std::span<const FlowParameters> flows, double time, const Matrix& points) {
   Matrix u = Matrix::Zero(points.rows(), 3);
   for (const FlowParameters& flow : flows) {

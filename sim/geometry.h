@@ -7,6 +7,9 @@
 
 namespace sim {
 
+/// Order of the grid on which areas and volumes are measured everywhere, so that all parts mean the same number.
+constexpr int measure_order(int p) { return 2 * p + 8; }
+
 struct Geometry {
   SecondDerivatives x;             ///< position and derivatives, points x 3
   Vector E, F, G, W;               ///< first fundamental form, W = sqrt(EG - F^2) (contains sin theta)

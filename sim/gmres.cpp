@@ -14,7 +14,12 @@ GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b,
     return result;
   }
   Vector r = guess.isZero(0) ? b : Vector(b - A(guess));
-  const double beta = r.norm();
+  double beta = r.norm();
+  if (beta > scale) {  // a guess that is worse than none costs digits
+    r = b;
+    beta = scale;
+    result.solution.setZero();
+  }
   result.residual = beta / scale;
   if (!std::isfinite(beta)) return result;
   if (result.residual <= tolerance) {

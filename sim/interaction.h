@@ -19,7 +19,8 @@ struct InteractionOptions {
   double coarse_spacings = 6;  ///< targets farther than this many spacings of the coarse grid take that; 0: none do
 };
 
-/// Densities on one vesicle, degree p: force for the single layer, (1 - lambda) u for the double layer.
+/// Densities on one vesicle, degree p: force for the single layer, (1 - lambda) u without its rigid
+/// part for the double layer.
 struct Densities {
   Coefficients force, dual;
 };

@@ -13,21 +13,23 @@ constexpr int most_iterations = 200;  ///< the spectral preconditioner takes 15 
 }  // namespace
 
 Membrane freeze_membrane(Plans& plans, const Material& material, const Coefficients& position, int upsampling,
-                         int source_order, const Coefficients& expected_tension) {
+                         int source_order, const Coefficients& expected_tension, std::optional<PinnedTension> pinned) {
   const int p = position.order, q = upsampling * p;
   const ForceBases bases{plans.basis(p, q), plans.basis(q, q)};
   Geometry g = geometry(bases.field, position);
   LayerMatrices layers = plans.layers(p, source_order).assemble(position, material.viscosity_contrast != 1);
   const double area = g.dA.sum(), radius = std::sqrt(area / (4 * std::numbers::pi));
   Vector stretched = Vector::Zero(bases.field.points());
-  if (expected_tension.values.size() > 0)
+  if (pinned)
+    stretched.setConstant(pinned->tension);
+  else if (expected_tension.values.size() > 0)
     stretched = bases.field.synthesize(resized(expected_tension, p)).values.col(0).cwiseMax(0);
   const double mean_stretched = integrate(g, stretched) / area;
   Matrix gradient = curvature_gradient(bases, g);
   // Degree p would leave the ripples of degree p + 1, ... without stiffness; with p + 2 and p + 4 runs agree with the full q.
   const Basis& ripples = plans.basis(std::min(q, p + 4), q);
-  return {bases,  ripples,           material, std::move(g), std::move(layers),
-          radius, std::move(gradient), std::move(stretched), mean_stretched, surface_waves(plans, position)};
+  return {bases, ripples, material, std::move(g), std::move(layers), radius, rigid_body(position), std::move(gradient),
+          std::move(stretched), mean_stretched, surface_waves(plans, position), pinned};
 }
 
 Vector packed(const Motion& m) {
@@ -58,6 +60,9 @@ Matrix buoyancy_force(const Membrane& m, const Vec3& gravity) {
 
 namespace {
 
+/// c of the instantaneous problem of a pinned tension.
+double step_of(const Membrane& m, double c) { return c == 0 && m.pinned ? m.pinned->time : c; }
+
 /// What a displacement (points x 3) adds to the bending force and, by the expected tension, to the tension force; along n.
 Vector displacement_magnitude(const Membrane& m, const Vector& bent) {
   return bending_magnitude(m.ripples, m.geometry, m.material.bending_modulus, bent) + 2 * m.stretched.cwiseProduct(bent);
@@ -67,6 +72,7 @@ Vector displacement_magnitude(const Membrane& m, const Vector& bent) {
 
 Coefficients implicit_force(const Membrane& m, double c, const Motion& y) {
   Matrix force = tension_force(m.bases, m.geometry, y.tension);
+  c = step_of(m, c);
   if (c != 0) {
     const Matrix displacement = c * m.bases.field.synthesize(y.velocity).values;
     const Vector bent = curvature_change(m.ripples, m.geometry, m.curvature_gradient, displacement);
@@ -83,30 +89,60 @@ Coefficients known_force(const Membrane& m, const Vec3& gravity, const Coefficie
     force += along_normal(m.geometry, displacement_magnitude(m, bent));
   }
   if (m.material.density_difference != 0) force += buoyancy_force(m, gravity);
+  if (m.pinned) {
+    const double mean = integrate(m.geometry, m.geometry.H) / m.geometry.dA.sum();
+    force += along_normal(m.geometry, Vector(2 * m.pinned->tension * (m.geometry.H.array() - mean)));
+  }
   return m.bases.field.analyze(force);
+}
+
+Coefficients double_layer(const Membrane& m, const Coefficients& velocity) {
+  Coefficients v{m.order(), {}};
+  if (m.layers.dual.order < 0) return v;
+  const Coefficients rigid = rigid_velocity(m.body, rigid_part(m.body, velocity));
+  v.values = m.layers.dual.apply({velocity.order, velocity.values - rigid.values}).values - 0.5 * rigid.values;
+  v.values *= 1 - m.material.viscosity_contrast;
+  return v;
+}
+
+Coefficients dual_density(const RigidBody& body, double viscosity_contrast, const Coefficients& velocity) {
+  if (viscosity_contrast == 1) return {velocity.order, Matrix::Zero(velocity.values.rows(), 3)};
+  Coefficients d = without_rigid_part(body, velocity);
+  d.values *= 1 - viscosity_contrast;
+  return d;
 }
 
 Coefficients layer_velocity(const Membrane& m, const Coefficients& force, const Coefficients& velocity) {
   Coefficients v = m.layers.single.apply(force);
-  if (m.layers.dual.order >= 0) v.values += (1 - m.material.viscosity_contrast) * m.layers.dual.apply(velocity).values;
+  if (m.layers.dual.order >= 0) v.values += double_layer(m, velocity).values;
   return v;
 }
 
-Vector system_rows(const Membrane& m, const Coefficients& u, const Coefficients& v) {
-  const Motion rows{{m.order(), m.material.alpha() * u.values - v.values}, divergence(m, v)};
-  Vector out = packed(rows);
-  out.tail(coefficient_count(m.order())) *= -1;
-  return out;
+Vector system_rows(const Membrane& m, const Motion& y, const Coefficients& v) {
+  Vector rows = packed({{m.order(), m.material.alpha() * y.velocity.values - v.values}, divergence(m, v)});
+  const Eigen::Index nc = coefficient_count(m.order());
+  rows.tail(nc) *= -m.radius;
+  if (m.pinned) rows[rows.size() - nc] = y.tension.values(0, 0);
+  return rows;
+}
+
+Vector system_right(const Membrane& m, const Coefficients& r) {
+  Vector right = packed({r, divergence(m, r)});
+  const Eigen::Index nc = coefficient_count(m.order());
+  right.tail(nc) *= m.radius;
+  if (m.pinned) right[right.size() - nc] = 0;
+  return right;
 }
 
 Vector apply_system(const Membrane& m, double c, const Vector& unknowns) {
   const Motion y = unpacked(unknowns, m.order());
-  return system_rows(m, y.velocity, layer_velocity(m, implicit_force(m, c, y), y.velocity));
+  return system_rows(m, y, layer_velocity(m, implicit_force(m, c, y), y.velocity));
 }
 
 SpectralInverse spectral_inverse(const Membrane& m, double c) {
   const double alpha = m.material.alpha(), R = m.radius, kappa = m.material.bending_modulus, sigma = m.mean_stretched;
   SpectralInverse inverse{alpha, {}, {}, {}};
+  c = step_of(m, c);
   if (c != 0) {
     // On a plane a normal traction of wave number k moves it at 1/(4k), and bending answers a ripple with kappa_b k^4/2.
     const auto stiffness = [&](double k) { return c * (kappa * k * k * k / 8 + sigma * k / 4); };
@@ -133,8 +169,8 @@ SpectralInverse spectral_inverse(const Membrane& m, double c) {
   }
   inverse.tension = mode_filter(m.waves, [&](double k) {
     const double n = std::sqrt(k * k * R * R + 0.25) - 0.5;
-    if (n < 0.5) return R;
-    return R * (2 * n - 1) * (2 * n + 1) * (2 * n + 3) / (n * (n + 1) * (2 * n * n + 2 * n - 1));
+    if (n < 0.5) return 1.0;
+    return (2 * n - 1) * (2 * n + 1) * (2 * n + 3) / (n * (n + 1) * (2 * n * n + 2 * n - 1));
   });
   return inverse;
 }
@@ -175,7 +211,7 @@ Vector precondition(const Membrane& m, const SpectralInverse& inverse, const Vec
 }
 
 Solve solve_system(const Membrane& m, double c, const Coefficients& r, const Motion& guess, double tolerance) {
-  const Vector b = packed({r, divergence(m, r)});
+  const Vector b = system_right(m, r);
   const SpectralInverse inverse = spectral_inverse(m, c);
   const GmresResult result = gmres([&](const Vector& y) { return apply_system(m, c, y); },
                                    [&](const Vector& y) { return precondition(m, inverse, y); }, b, packed(guess),
@@ -192,15 +228,18 @@ Coefficients tension_velocity(const Membrane& m, const Coefficients& sigma) {
 }  // namespace
 
 Solve solve_tension(const Membrane& m, const Coefficients& r, const Motion& guess, double tolerance) {
-  const int p = m.order();
+  const int p = m.order(), nc = coefficient_count(p);
   Coefficients known = r;
-  if (m.layers.dual.order >= 0)
-    known.values += (1 - m.material.viscosity_contrast) * m.layers.dual.apply(guess.velocity).values;
+  if (m.layers.dual.order >= 0) known.values += double_layer(m, guess.velocity).values;
   const SpectralInverse inverse = spectral_inverse(m, 0);
-  const GmresResult result = gmres(
-      [&](const Vector& y) { return Vector(-divergence(m, tension_velocity(m, {p, y})).values.col(0)); },
-      [&](const Vector& y) { return Vector(precondition_tension(inverse, {p, y}).values.col(0)); }, divergence(m, known).values.col(0),
-      packed(guess).tail(coefficient_count(p)), tolerance, most_iterations);
+  const auto left = [&](const Vector& y) {
+    Vector rows = -m.radius * divergence(m, tension_velocity(m, {p, y})).values.col(0);
+    if (m.pinned) rows[0] = y[0];
+    return rows;
+  };
+  const GmresResult result =
+      gmres(left, [&](const Vector& y) { return Vector(precondition_tension(inverse, {p, y}).values.col(0)); },
+            system_right(m, known).tail(nc), packed(guess).tail(nc), tolerance, most_iterations);
   const Coefficients sigma{p, result.solution};
   const Coefficients u{p, (known.values + tension_velocity(m, sigma).values) / m.material.alpha()};
   return {{u, sigma}, result.iterations, result.residual, result.converged};

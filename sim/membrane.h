@@ -6,17 +6,26 @@
 //   -P { (1-lambda) D u + S [f_b(c u) + f_sigma(sigma)] } = P r,                                              (39b)
 // with P the surface divergence; (39b) is P applied to (39a) under P u = 0. S carries 1/(8 pi), viscosity 1 outside.
 //
+// D acts on u less its rigid part, of which it makes -1/2 (rigid.h): rigid motions then solve (39) exactly for every lambda.
+//
 // Two things differ from the paper. The tension that the membrane is expected to have is stiff in the position as bending
 // is: a ripple of wave number k relaxes at the rate sigma k/4. Where it is positive, 2 sigma (H+ - H) n joins f_b, with the
 // first variation H+ of forces.h; the terms left out are of second order in the step. Left explicit it limits the step to
 // about 5/(sigma p). And the tension has degree p - 1: its gradient then has degree p, as velocities do. With degree p the
 // gradients of the highest degree are cut off, and the pair of velocity and tension is nearly singular.
+//
+// A sphere has no excess area: what keeps it round is a constant tension that grows without bound, while the linear
+// constraint P u = 0 leaves normal velocities free. Its constant tension is therefore no unknown but a given large one,
+// sigma_p, "pinned": 2 sigma_p (H+ - <H>) n without the pressure -2 sigma_p <H> n, which moves nothing.
 #pragma once
 
 #include "flows.h"
 #include "forces.h"
 #include "gmres.h"
+#include "rigid.h"
 #include "waves.h"
+
+#include <optional>
 
 namespace sim {
 
@@ -28,6 +37,12 @@ struct Material {
   double alpha() const { return (1 + viscosity_contrast) / 2; }
 };
 
+/// The given constant tension of a sphere, and the time over which it acts in an instantaneous problem (c = 0), where it
+/// could not: the shape's answer to u must count.
+struct PinnedTension {
+  double tension = 0, time = 0;
+};
+
 struct Membrane {
   ForceBases bases;
   const Basis& ripples;  ///< degree p + 4 on the upsampled grid: the normal part of a displacement of degree p
@@ -35,17 +50,19 @@ struct Membrane {
   Geometry geometry;     ///< on the upsampled grid
   LayerMatrices layers;  ///< D assembled only when lambda differs from 1
   double radius;         ///< area radius
+  RigidBody body;
   Matrix curvature_gradient;
   Vector stretched;      ///< positive part of the expected tension on the grid
   double mean_stretched; ///< its mean over the surface
   SurfaceWaves waves;
+  std::optional<PinnedTension> pinned;  ///< of a sphere
   int order() const { return bases.field.order(); }
 };
 
 /// Geometry and operators at x*; upsampling is the rate of Algorithm 1, source_order 0 means p + 1. Without an expected
-/// tension (order p or less) the tension is explicit in the position, as in the paper.
+/// tension (order p or less) the tension is explicit in the position, as in the paper; a pinned one takes its place.
 Membrane freeze_membrane(Plans&, const Material&, const Coefficients& position, int upsampling, int source_order,
-                         const Coefficients& expected_tension = {});
+                         const Coefficients& expected_tension = {}, std::optional<PinnedTension> pinned = {});
 
 /// Velocity (3 fields) and tension (1 field) in coefficients of degree p; of the tension the highest degree is zero.
 struct Motion {
@@ -65,18 +82,27 @@ Matrix buoyancy_force(const Membrane&, const Vec3& gravity);
 Coefficients implicit_force(const Membrane&, double c, const Motion&);
 Coefficients known_force(const Membrane&, const Vec3& gravity, const Coefficients& displacement = {});
 
+/// (1 - lambda) D u, of the rigid part of u exactly; empty values for lambda = 1.
+Coefficients double_layer(const Membrane&, const Coefficients& velocity);
+/// Density of the double layer that others see: (1 - lambda) u less its rigid part, which makes nothing outside.
+Coefficients dual_density(const RigidBody&, double viscosity_contrast, const Coefficients& velocity);
+
 /// (1 - lambda) D u + S f.
 Coefficients layer_velocity(const Membrane&, const Coefficients& force, const Coefficients& velocity);
 
-/// Both rows of (39), packed, from the trial velocity u and the velocity v that all layers make of it: alpha u - v, -P v.
-Vector system_rows(const Membrane&, const Coefficients& u, const Coefficients& v);
+/// Both rows of (39), packed, from the trial motion (u, sigma) and the velocity v that all layers make of it: alpha u - v,
+/// -R P v. R, the area radius, makes both velocities, so that a residual means the same in any unit of length. Where the
+/// tension is pinned the constant one of the unknown is zero, and the row says so.
+Vector system_rows(const Membrane&, const Motion&, const Coefficients& v);
+/// Right-hand side of (39) for a forcing r: r, R P r.
+Vector system_right(const Membrane&, const Coefficients& r);
 
 /// Left-hand side of (39) for the packed unknowns.
 Vector apply_system(const Membrane&, double c, const Vector& unknowns);
 
 /// The spectral preconditioner of section 3.5, corrected, and with the wave numbers k of the surface in place of n/R:
 ///   velocity: 1/alpha along the membrane, 1/(alpha + g) along its normal, g = c (kappa_b k^3/8 + sigma k/4)
-///   tension:  R/l_n, l_n = n(n+1)(2n^2+2n-1)/((2n-1)(2n+1)(2n+3)), with n(n+1) = (kR)^2, l_0 = 1.
+///   tension:  1/l_n, l_n = n(n+1)(2n^2+2n-1)/((2n-1)(2n+1)(2n+3)), with n(n+1) = (kR)^2, l_0 = 1.
 /// Velocities end at degree p, so that of normal fields of degree p and p + 1 only about half is there, and 1/(alpha + g) is
 /// far from the inverse of alpha + N g N^T (N: psi -> psi n, cut off). Where the highest waves are stiff, the Woodbury
 /// formula 1/alpha - N (alpha/g + N^T N)^{-1} N^T / alpha is taken whole for the last degrees.
@@ -98,7 +124,8 @@ struct Solve {
   double residual = 0;
   bool converged = false;
 };
-/// Solves (39) from a guess. On an exact sphere the constant tension is a null vector; it stays what the guess has.
+/// Solves (39) from a guess. On an exact sphere the constant tension is a null vector unless it is pinned; it stays what
+/// the guess has.
 Solve solve_system(const Membrane&, double c, const Coefficients& forcing, const Motion& guess, double tolerance);
 
 /// Eq. (43): the tension that makes (r + S f_sigma) / alpha free of divergence, -P S f_sigma(sigma) = P r.

@@ -29,15 +29,15 @@ double step_length(const Dynamics& d, double target) {
 /// Halves a failing step down to step / 2^step_retries, and lets it grow again after some calm ones.
 Step step_with_retries(const Setting& s, Dynamics& d, double target, const SimulationObserver& observer) {
   constexpr std::int64_t calm_enough = 8;
-  const double shortest = std::ldexp(s.scene.time.step, -s.scene.numerics.step_retries);
+  const double longest = longest_step(s.scene), shortest = std::ldexp(longest, -s.scene.numerics.step_retries);
   for (int retries = 0;; ++retries) {
     const double dt = step_length(d, target);
     try {
       Step step = take_step(s, d, dt);
       step.record.retries = retries;
       if (std::abs(step.dynamics.time - target) < same_time * dt) step.dynamics.time = step.record.time = target;
-      if (++step.dynamics.calm >= calm_enough && d.dt_limit < s.scene.time.step) {
-        step.dynamics.dt_limit = std::min(2 * d.dt_limit, s.scene.time.step);
+      if (++step.dynamics.calm >= calm_enough && d.dt_limit < longest) {
+        step.dynamics.dt_limit = std::min(2 * d.dt_limit, longest);
         step.dynamics.calm = 0;
       }
       return step;
@@ -61,7 +61,7 @@ TrajectoryLayout layout_for(const Scene& scene, const Dynamics& d) {
     layout.label_order = std::max(layout.label_order, v.labels.order);
     layout.tracers = int(v.tracers.rows());
   }
-  const double steps = std::ceil(scene.time.end / scene.time.step);
+  const double steps = std::ceil(scene.time.end / longest_step(scene));
   const double saved = scene.time.save_every ? std::ceil(scene.time.end / *scene.time.save_every) : steps;
   layout.states = std::int64_t(std::min(saved, 1e6)) + 2;
   layout.steps = std::int64_t(std::min(std::max(steps, saved), 1e7)) + 16;
@@ -98,10 +98,11 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
     d = deserialised(file->resume_payload());
   } else {
     d = initial_dynamics(setting);
-    const TrajectoryHeader header{options.scene_text, options.program, options.build, resolution_warnings(setting, d)};
+    const TrajectoryHeader header{options.scene_text, options.program, options.build, scene_warnings(setting, d)};
     if (observer.on_warning)
       for (const std::string& warning : header.warnings) observer.on_warning(warning);
     const State first = evaluate(setting, d);
+    expect(d, first);
     const TrajectoryLayout layout = layout_for(scene, d);
     mark_saved(d, first);
     file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d)));
@@ -133,13 +134,14 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
       break;
     }
     const bool every_step = !scene.time.save_every;
-    const double target = save_time(scene, d);
+    const double due = save_time(scene, d), switched = next_switch(scene.flows, d.time), target = std::min(due, switched);
     try {
       Step step = step_with_retries(setting, d, target, noting);
       d = std::move(step.dynamics);
       records.push_back(step.record);
       if (observer.on_step) observer.on_step(d, step.record);
-      if (every_step || d.time == target) save();
+      if (every_step || d.time == due) save();
+      if (d.time == switched) begin_anew(setting, d);
     } catch (const StepFailure& error) {
       outcome.end = SimulationEnd::failed;
       outcome.reason = fmt::format("t = {:.6g}: {}", d.time, error.what());
@@ -177,7 +179,7 @@ Preview preview(const Scene& scene) {
   Plans plans;
   const Setting setting = make_setting(scene, plans);
   const Dynamics d = initial_dynamics(setting);
-  return {evaluate(setting, d), resolution_warnings(setting, d)};
+  return {evaluate(setting, d), scene_warnings(setting, d)};
 }
 
 }  // namespace sim

@@ -17,10 +17,26 @@ struct SuspensionOptions {
   double repulsion_strength = 0, repulsion_range = 0.05;  ///< strength 0: none
 };
 
+/// A vesicle without excess area to speak of: the shape is a sphere's to 1.2e-3 of its radius, and a constant tension holds it.
+bool is_sphere(const AreaVolume&);
+/// The fastest rate at which anything strains the vesicles of a scene: the background flow at its full strength, bending,
+/// buoyancy. `sizes`: A0 and V0.
+double straining_rate(Plans&, std::span<const FlowParameters>, const Vec3& gravity, std::span<const Material>,
+                      std::span<const Coefficients> positions, std::span<const AreaVolume> sizes);
+
+/// The tensions of those that are spheres, from the rate that strains the vesicles of the scene.
+std::vector<std::optional<PinnedTension>> pinned_tensions(Plans&, std::span<const FlowParameters>, const Vec3& gravity,
+                                                          std::span<const Material>, std::span<const Coefficients> positions,
+                                                          std::span<const AreaVolume> sizes);
+
+/// Least area radius of some vesicles.
+double smallest_radius(std::span<const AreaVolume> sizes);
+
 /// Geometry and operators of all vesicles at x*; expected tensions: see freeze_membrane().
 Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const Coefficients> positions,
                              std::span<const int> upsamplings, const SuspensionOptions&,
-                             std::span<const Coefficients> expected_tensions = {});
+                             std::span<const Coefficients> expected_tensions = {},
+                             std::span<const std::optional<PinnedTension>> pinned = {});
 
 /// r of (39a) for every vesicle: background flow, and the velocities that the bending of the histories, buoyancy and
 /// repulsion cause, one's own and the others'. `displacements`: histories less frozen positions, none where they are the same.
@@ -43,8 +59,10 @@ struct SuspensionSolve {
   double residual = 0;
   bool converged = false;
 };
-/// Solves the coupled system from a guess.
+/// Solves the coupled system from a guess. `frames`: a rigid motion a vesicle near its own. What is solved for is the rest of the
+/// motion, and so the tolerance, which is relative to the rest, and displacements over the time c are those of the rest.
 SuspensionSolve solve_suspension(const Suspension&, double c, std::span<const Coefficients> forcing,
-                                 std::span<const Motion> guess, double tolerance, Preconditioner);
+                                 std::span<const Motion> guess, double tolerance, Preconditioner,
+                                 std::span<const RigidMotion> frames = {});
 
 }  // namespace sim

@@ -1,7 +1,6 @@
 #include "velocity.h"
 
 #include "dealias.h"
-#include "geometry.h"
 #include "parallel.h"
 
 #include <cmath>
@@ -82,31 +81,37 @@ FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const
   FlowField field{scene.flows, state.time, std::vector<FlowSource>(n), options};
   std::vector<Material> materials;
   std::vector<Coefficients> positions;
+  std::vector<AreaVolume> sizes;
   for (int i = 0; i < n; ++i) {
     const VesicleParameters& v = scene.vesicles[i];
     materials.push_back({v.viscosity_contrast, v.bending_modulus, v.density_difference});
     positions.push_back(state.vesicles[i].position);
+    sizes.push_back(area_volume(plans.basis(positions[i].order, measure_order(positions[i].order)), positions[i]));
   }
+  const auto pinned = pinned_tensions(plans, scene.flows, scene.buoyancy.gravity, materials, positions, sizes);
   std::vector<Coefficients> repelled;
   if (n > 1 && numerics.repulsion_strength > 0) {
     const InteractionOptions interaction{numerics.interaction_order, numerics.near_rule, {numerics.near_latitudes, numerics.near_longitudes}};
     repelled = repulsion(plan_interaction(plans, positions, materials, interaction), numerics.repulsion_strength,
-                         numerics.repulsion_range);
+                         numerics.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes)));
   }
   for (int i = 0; i < n; ++i) {  // the threads share the work inside
     const VesicleState& v = state.vesicles[i];
     const int p = v.position.order;
     const int rate = numerics.upsampling > 0 ? numerics.upsampling
                                              : upsampling_rate(plans, v.position, numerics.aliasing_tolerance);
-    const Membrane m = freeze_membrane(plans, materials[i], v.position, rate, numerics.source_order);
+    const Membrane m = freeze_membrane(plans, materials[i], v.position, rate, numerics.source_order, {},
+                                       options.hold_spheres ? pinned[i] : std::nullopt);
     FlowSource& source = field.sources[i];
     source.position = v.position;
     source.velocity = v.velocity;
     source.viscosity_contrast = materials[i].viscosity_contrast;
     source.densities.force = known_force(m, scene.buoyancy.gravity);
-    source.densities.force.values += implicit_force(m, 0, {v.velocity, v.tension}).values;
+    source.rigid = rigid_part(m.body, v.velocity);
+    const Motion rest{without_rigid_part(m.body, v.velocity), v.tension};
+    source.densities.force.values += implicit_force(m, 0, rest).values;
     if (!repelled.empty()) source.densities.force.values += repelled[i].values;
-    source.densities.dual = {p, (1 - source.viscosity_contrast) * v.velocity.values};
+    source.densities.dual = dual_density(m.body, source.viscosity_contrast, v.velocity);
     source.rotation = &plans.rotation(p);
     const int coarse = std::max(2 * p, 24);
     source.directions = grid_directions(plans.basis(p, coarse));
@@ -133,8 +138,10 @@ FlowSamples velocity_at(const FlowField& field, const Matrix& points) {
         u.row(k) += all[k].velocity.transpose();
         samples.distance[first + k] = std::min(samples.distance[first + k], all[k].distance);
         if (!all[k].within) continue;
+        const FlowSource& source = field.sources[j];
         samples.within[first + k] = int(j);
-        contrast[k] = field.sources[j].viscosity_contrast;
+        contrast[k] = source.viscosity_contrast;
+        u.row(k) += (source.viscosity_contrast - 1) * source.rigid.at(here.row(k).transpose()).transpose();
       }
     }
     u.array().colwise() /= contrast.array();

@@ -2,12 +2,13 @@
 //
 // With the force densities f_j of all membranes on the fluid and their velocities u_j, from the representation formula:
 //   c u(x) = u_inf(x) + sum_j { S_j[f_j](x) + (1 - lambda_j) D_j[u_j](x) },   c = 1 outside, lambda_k inside of vesicle k
-// (D with the sign of layer_potentials.h: of a rigid motion it makes -(1 - lambda) inside, 0 outside). Both sides meet the
+// (D with the sign of layer_potentials.h: of a rigid motion it makes -1 inside, 0 outside, and this part of u_j is taken
+// exactly). Both sides meet the
 // membrane's own velocity. Far from a membrane the smooth rule serves, on the coarsest of three source grids that is fine
 // enough; nearer than some spacings of the finest grid the near-singular rule of near.h.
 #pragma once
 
-#include "interaction.h"
+#include "suspension.h"
 
 #include <array>
 
@@ -16,17 +17,19 @@ namespace sim {
 struct FlowFieldOptions {
   double spacings = 3;           ///< the smooth rule keeps so many local source spacings away; its error falls as e^(-2 pi n)
   NearOrder near_order{48, 64};  ///< 32 x 40 is fine for the eye, at a third of the cost
+  bool hold_spheres = true;      ///< by the tension that keeps them round in a run; else they stretch as (3a) alone says
 };
 
 /// One membrane as a source of flow, frozen at a state.
 struct FlowSource {
   struct Level {
     Sources sources;
-    Matrix force, dual;  ///< samples at the sources; dual: (1 - lambda) u, empty for lambda = 1
+    Matrix force, dual;  ///< samples at the sources; dual: (1 - lambda) u less its rigid part, empty for lambda = 1
   };
   Coefficients position, velocity;
   Densities densities;
   double viscosity_contrast = 1;
+  RigidMotion rigid;            ///< of the velocity
   Matrix directions;  ///< parameters of the coarsest level's points, unit vectors
   std::array<Level, 3> levels;  ///< from coarse to fine, each spacing half of the one before
   const RotationPlan* rotation = nullptr;

@@ -40,7 +40,7 @@ inline sim::Coefficients potato(int order) {
   v.shape = "harmonics";
   v.coefficients = {{2, 0, 0.3}, {2, 1, 0.15}, {3, -2, 0.1}, {3, 3, -0.12}};
   v.order = order;
-  v.axis = {1, 0.4, -0.3};
+  v.axis = sim::Vec3(1, 0.4, -0.3);
   return sim::initial_position(v);
 }
 

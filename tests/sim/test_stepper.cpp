@@ -315,7 +315,7 @@ TEST_CASE("the modes of a sphere have the wave numbers sqrt(n(n+1))/R, those of 
   // Tilted, so that no axis is one of the grid's: the modes must not care.
   const SurfaceWaves along = surface_waves(plans, test::surface("prolate", 0.7, p));
   VesicleParameters w = test::vesicle("prolate", 0.7, p);
-  w.axis = {1, 2, -1};
+  w.axis = Vec3(1, 2, -1);
   const SurfaceWaves tilted = surface_waves(plans, initial_position(w));
   CHECK((along.numbers[p] - tilted.numbers[p]).cwiseAbs().maxCoeff() < 1e-10);
   CHECK(along.numbers[p].maxCoeff() > 1.5 * along.numbers[p].minCoeff());
