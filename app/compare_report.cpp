@@ -270,7 +270,7 @@ void write_page(const CompareRequest& request, const std::vector<Comparison>& al
                         count_of(all, Verdict::same), equal);
   std::string rule;
   render::visit(request.rule, [&](std::string_view name, std::string_view meaning, const double& value) {
-    if (std::isfinite(value) && (name != "ppd" || std::isfinite(request.rule.flip_mean + request.rule.flip_max)))
+    if (std::isfinite(value) && (name != "ppd" || std::isfinite(std::min({request.rule.flip_mean, request.rule.flip_max, request.rule.flip_spot}))))
       rule += fmt::format("<tr><td>{}</td><td>{:g}</td><td>{}</td></tr>\n", name, value, meaning);
   });
   const std::pair<std::string_view, std::string> places[] = {{"{{totals}}", report_totals(all)},

@@ -32,7 +32,7 @@ std::span<const ComparePreset> compare_presets() {
       {{"exact", "every channel of every pixel is equal", {.channel = 0, .pixels = 0, .share = 0, .largest = 0, .rmse = 0}},
        {"default", "equal but for rounding: other processors, other versions of the drawing libraries", {}},
        {"perceptual", "no difference that stays visible when one flips between the two (FLIP)",
-        {.pixels = unlimited, .largest = unlimited, .rmse = unlimited, .flip_mean = 0.05, .flip_max = 0.4}}}};
+        {.pixels = unlimited, .largest = unlimited, .rmse = unlimited, .flip_mean = 0.05, .flip_max = 0.4, .flip_spot = 0.15}}}};
   return presets;
 }
 
@@ -92,6 +92,7 @@ void measure_samples(const PngFile& a, const PngFile& b, const CompareRule& rule
   }
   result.maximum = maximum / unit;
   // Three samples a pixel, with or without alpha: a channel that is equal must not dilute what the others differ by.
+  result.spot = result.above > 0 && std::int64_t{16} * (result.right - result.left) * (result.bottom - result.top) <= result.compared;
   const double samples = 3 * static_cast<double>(result.compared);
   result.rmse = samples > 0 ? std::sqrt(static_cast<double>(squares) / samples) / unit : 0;
 }
@@ -109,7 +110,7 @@ ImageDifference difference(const PngFile& a, const PngFile& b, const CompareRule
     result.declared.push_back(fmt::format("its numbers mean {} instead of {}", said(b.colours, "sRGB"), said(a.colours, "sRGB")));
   if (a.animation != b.animation)
     result.declared.push_back(fmt::format("an animation: {} instead of {}", said(b.animation, "a still"), said(a.animation, "a still")));
-  if (rule.flip_mean == unlimited && rule.flip_max == unlimited) return result;
+  if (rule.flip_mean == unlimited && rule.flip_max == unlimited && rule.flip_spot == unlimited) return result;
   result.flip_mean = result.flip_max = 0;
   if (result.maximum == 0) return result;
   double total = 0;
@@ -149,6 +150,8 @@ std::vector<std::string> objections(const ImageDifference& d, const CompareRule&
     all.push_back(fmt::format("mean FLIP {:.4g} (allowed: {:g})", *d.flip_mean, rule.flip_mean));
   if (!within(d.flip_max.value_or(0), rule.flip_max))
     all.push_back(fmt::format("largest FLIP {:.4g} (allowed: {:g})", *d.flip_max, rule.flip_max));
+  else if (d.spot && !within(d.flip_max.value_or(0), rule.flip_spot))
+    all.push_back(fmt::format("largest FLIP {:.4g} in one spot (allowed: {:g})", *d.flip_max, rule.flip_spot));
   all.insert(all.end(), d.declared.begin(), d.declared.end());
   return all;
 }

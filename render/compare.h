@@ -16,10 +16,11 @@ struct CompareRule {
   double channel = 2;       ///< a pixel differs when one of its channels differs by more, 8-bit units
   double pixels = 10;       ///< so many pixels may differ in any picture
   double share = 2e-5;      ///< ... or this share of its pixels, whichever is more
-  double largest = 32;      ///< no channel may differ by more, 8-bit units
+  double largest = 48;      ///< no channel may differ by more, 8-bit units
   double rmse = 0.15;       ///< root mean square over the colours, 8-bit units; alpha adds to it where it differs
   double flip_mean = std::numeric_limits<double>::infinity();  ///< mean of the FLIP map, 0..1
   double flip_max = std::numeric_limits<double>::infinity();   ///< its largest value
+  double flip_spot = std::numeric_limits<double>::infinity();  ///< the same where the pictures differ in one spot only
   double ppd = 67;          ///< pixels per degree of sight that FLIP supposes
 };
 
@@ -34,6 +35,7 @@ void visit(R& r, V&& v) {
   v("rmse", "largest root mean square difference over all channels, of 255", r.rmse);
   v("flip-mean", "largest mean of the FLIP map, 0 to 1", r.flip_mean);
   v("flip-max", "largest single value of the FLIP map, 0 to 1", r.flip_max);
+  v("flip-spot", "the same where all that differs lies within a 16th of the picture, as no other driver does it", r.flip_spot);
   v("ppd", "pixels per degree of sight that FLIP supposes", r.ppd);
 }
 
@@ -55,6 +57,7 @@ struct ImageDifference {
   double rmse = 0;            ///< in 8-bit units
   int left = 0, top = 0, right = 0, bottom = 0;  ///< smallest box around the pixels above; right and bottom excluded
   std::optional<double> flip_mean, flip_max;     ///< when the rule asks for them
+  bool spot = false;                             ///< is that box not empty, and at most a 16th of what counted?
   std::vector<std::string> declared;             ///< what the files say differently about equal samples, a phrase each
 };
 
