@@ -321,7 +321,9 @@ int exit_status(const std::vector<Comparison>& all) {
 bool stays_within(const fs::path& folder, const fs::path& file) {
   std::error_code error;
   if (fs::is_symlink(fs::symlink_status(file, error))) return false;
-  const fs::path root = fs::weakly_canonical(folder, error), place = fs::weakly_canonical(folder_of(file), error);
+  error.clear();  // it need not be there
+  const auto resolved = [&](const fs::path& path) { return error ? path : fs::weakly_canonical(fs::absolute(path), error); };
+  const fs::path root = resolved(folder), place = resolved(folder_of(file));
   return !error && std::mismatch(root.begin(), root.end(), place.begin(), place.end()).first == root.end();
 }
 
@@ -349,10 +351,13 @@ Accepted accept_pictures(const CompareRequest& request, std::vector<Comparison>&
   for (Comparison& c : all) {
     const bool takes = c.verdict == Verdict::different || c.verdict == Verdict::size || c.verdict == Verdict::fresh;
     if (!takes) continue;
-    if (request.look) request.look();
     try {
+      if (request.look) request.look();
       accepted.done.push_back(accept_picture(request, c));
       c.verdict = Verdict::same;
+    } catch (const CompareStopped&) {
+      accepted.refused.emplace_back("interrupted; the remaining pictures are not accepted");
+      break;
     } catch (const std::exception& error) {
       accepted.refused.push_back(fmt::format("{} is not accepted: {}", c.name, error.what()));
     }
