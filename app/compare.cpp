@@ -181,7 +181,7 @@ std::string reason(const std::exception& error) {
 Comparison compare_with(const CompareRequest& request, const Pair& pair, const render::PngFile& actual, const fs::path& path) {
   Comparison result{pair.name, path, pair.actual, pair.baseline, pair.mask, {}, Verdict::same, {}};
   try {
-    const render::PngFile expected = render::read_png(path);
+    const render::PngFile expected = render::read_png(path, request.look);
     const int width = actual.image.width, height = actual.image.height;
     if (expected.image.width != width || expected.image.height != height) {
       result.verdict = Verdict::size;
@@ -209,7 +209,7 @@ Comparison compare_pair(const CompareRequest& request, const Pair& pair) {
     return result;
   }
   try {
-    const render::PngFile actual = render::read_png(pair.actual);
+    const render::PngFile actual = render::read_png(pair.actual, request.look);
     if (pair.baselines.empty()) {
       result.verdict = Verdict::fresh;
       result.detail = "made, but nothing is expected";

@@ -86,6 +86,7 @@ struct Reader {
   Failure failure;
   std::uint64_t packed_rows = 0;  ///< bytes that the compressed part must give
   bool sixteen_bits = false;
+  int passes = 1;  ///< over all rows, of an interlaced picture
   explicit Reader(std::FILE* f) : file(f) {}
   Reader(const Reader&) = delete;
   ~Reader() {
@@ -112,14 +113,19 @@ bool read_header(Reader& r) {
   r.sixteen_bits = png_get_bit_depth(r.png, r.info) == 16;
   png_set_expand(r.png);
   png_set_gray_to_rgb(r.png);
-  png_set_interlace_handling(r.png);
+  r.passes = png_set_interlace_handling(r.png);
   png_read_update_info(r.png, r.info);
   return true;
 }
 
-bool read_rows(Reader& r, png_bytep* rows) {
+bool read_rows(Reader& r, png_bytep* rows, png_uint_32 count) {
   if (setjmp(png_jmpbuf(r.png))) return false;
-  png_read_image(r.png, rows);
+  png_read_rows(r.png, rows, nullptr, count);
+  return true;
+}
+
+bool read_end(Reader& r) {
+  if (setjmp(png_jmpbuf(r.png))) return false;
   png_read_end(r.png, r.info);
   return true;
 }
@@ -271,7 +277,7 @@ void write_png(const std::filesystem::path& path, const Image& image, const PngT
   write_file(path, bytes);
 }
 
-PngFile read_png(std::FILE* file, const std::filesystem::path& path) {
+PngFile read_png(std::FILE* file, const std::filesystem::path& path, const std::function<void()>& look) {
   Reader r(file);
   char start[64] = {};
   const std::size_t got = std::fread(start, 1, sizeof start, file);
@@ -299,7 +305,14 @@ PngFile read_png(std::FILE* file, const std::filesystem::path& path) {
   std::vector<png_bytep> rows;
   for (int y = 0; y < result.image.height; ++y)
     rows.push_back(r.sixteen_bits ? wide.data() + static_cast<std::size_t>(y) * 2 * (samples / height) : result.image.at(0, y));
-  if (!read_rows(r, rows.data())) fail(path, std::string("is damaged: ") + r.failure.text);
+  constexpr png_uint_32 at_a_time = 128;
+  bool whole = true;
+  for (int pass = 0; pass < r.passes && whole; ++pass)
+    for (png_uint_32 y = 0; y < height && whole; y += at_a_time) {
+      if (look) look();
+      whole = read_rows(r, rows.data() + y, std::min(at_a_time, height - y));
+    }
+  if (!whole || !read_end(r)) fail(path, std::string("is damaged: ") + r.failure.text);
   if (r.sixteen_bits) {
     result.lower_bytes.resize(samples);
     for (std::size_t i = 0; i < samples; ++i) {
@@ -316,14 +329,14 @@ PngFile read_png(std::FILE* file, const std::filesystem::path& path) {
   return result;
 }
 
-PngFile read_png(const std::filesystem::path& path) {
+PngFile read_png(const std::filesystem::path& path, const std::function<void()>& look) {
   const Stream file = open_to_read(path);
   if (!file) fail(path, std::string("cannot be read: ") + std::strerror(errno));
   struct stat status {};
   if (::fstat(::fileno(file.get()), &status) != 0) fail(path, std::string("cannot be read: ") + std::strerror(errno));
   if (S_ISDIR(status.st_mode)) fail(path, "is a folder, not a PNG file");
   if (!S_ISREG(status.st_mode)) fail(path, "is a pipe or a device, not a PNG file");
-  return read_png(file.get(), path);
+  return read_png(file.get(), path, look);
 }
 
 std::uint64_t png_memory(const std::filesystem::path& path) {

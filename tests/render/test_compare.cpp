@@ -323,20 +323,52 @@ TEST_CASE("samples of 16 bits count with their lower bytes") {
   CHECK(render::difference(eight, b, exact).above == 1);
 }
 
-TEST_CASE("the PNG reader keeps the lower bytes of 16 bits") {
-  // 2 x 1 grey pixels of 16 bits, 0x1234 and 0xabcd, compressed by storing them.
+namespace {
+
+/// A file of grey samples; `rows` are what is compressed, here by storing it.
+std::string grey_file(int width, int height, int bits, bool interlaced, const std::string& rows) {
   using namespace std::string_literals;
-  const std::string start = "\x89PNG\r\n\x1a\n"s;
-  const auto chunk = [&](const std::string& type, const std::string& data) { return with_chunk(std::string(33, ' '), type, data).substr(33); };
-  const std::string row = "\0\x12\x34\xab\xcd"s;
+  const auto chunk = [](const std::string& type, const std::string& data) {
+    return with_chunk(std::string(33, ' '), type, data).substr(33);
+  };
+  const auto bytes = [](std::initializer_list<int> values) {
+    std::string text;
+    for (const int v : values) text += static_cast<char>(v);
+    return text;
+  };
   std::uint32_t low = 1, high = 0;
-  for (const char c : row) low = (low + static_cast<unsigned char>(c)) % 65521, high = (high + low) % 65521;
-  std::string stored = "\x78\x01\x01\x05\0\xfa\xff"s + row;
-  for (const std::uint32_t v : {high >> 8, high, low >> 8, low}) stored += static_cast<char>(v);
-  const render::PngFile file = render::png_from(
-      start + chunk("IHDR", "\0\0\0\2\0\0\0\1\x10\0\0\0\0"s) + chunk("IDAT", stored) + chunk("IEND", ""), "wide");
+  for (const char c : rows) low = (low + static_cast<unsigned char>(c)) % 65521, high = (high + low) % 65521;
+  const int size = static_cast<int>(rows.size()), l = static_cast<int>(low), h = static_cast<int>(high);
+  REQUIRE(size < 65536);
+  const std::string stored = "\x78\x01\x01"s + bytes({size, size >> 8, ~size, ~size >> 8}) + rows + bytes({h >> 8, h, l >> 8, l});
+  return "\x89PNG\r\n\x1a\n"s + chunk("IHDR", bytes({0, 0, width >> 8, width, 0, 0, height >> 8, height, bits, 0, 0, 0, interlaced})) +
+         chunk("IDAT", stored) + chunk("IEND", "");
+}
+
+}  // namespace
+
+TEST_CASE("the PNG reader keeps the lower bytes of 16 bits") {
+  using namespace std::string_literals;
+  const render::PngFile file = render::png_from(grey_file(2, 1, 16, false, "\0\x12\x34\xab\xcd"s), "wide");
   CHECK(file.image.pixels == std::vector<std::uint8_t>{0x12, 0x12, 0x12, 0xab, 0xab, 0xab});
   CHECK(file.lower_bytes == std::vector<std::uint8_t>{0x34, 0x34, 0x34, 0xcd, 0xcd, 0xcd});
+}
+
+TEST_CASE("the PNG reader puts an interlaced picture together") {
+  // First column, first row and the steps of Adam7's passes.
+  constexpr int passes[7][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4}, {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
+  const int width = 21, height = 407;  // more rows than are read at a time
+  const auto value = [](int x, int y) { return static_cast<std::uint8_t>(7 * x + 31 * y + x * y); };
+  std::string rows;
+  for (const auto& [left, top, across, down] : passes)
+    for (int y = top; y < height; y += down) {
+      rows += '\0';  // no filter
+      for (int x = left; x < width; x += across) rows += static_cast<char>(value(x, y));
+    }
+  const Image image = render::png_from(grey_file(width, height, 8, true, rows), "interlaced").image;
+  REQUIRE((image.width == width && image.height == height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) REQUIRE(int(image.at(x, y)[0]) == int(value(x, y)));
 }
 
 TEST_CASE("a picture of another format is called what it is, and no pipe is waited for") {
