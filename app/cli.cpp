@@ -55,6 +55,18 @@ void parse_size(Options& options, const std::string& text) {
   options.set.push_back(fmt::format("view.size=[{}, {}]", width, height));
 }
 
+/// A threshold of `compare`.
+void parse_limit(Options& options, const char* name, const std::string& text) {
+  double value = 0;
+  if (!read_number(text, value)) throw CLI::ValidationError(std::string("--") + name, fmt::format("'{}' is not a number", text));
+  try {
+    render::check_limit(name, value);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(std::string("--") + name, error.what());
+  }
+  options.limits.emplace_back(name, value);
+}
+
 /// "180mm", "180x120mm", "1200x800px".
 void parse_figure_size(Options& options, const std::string& text) {
   const std::string unit = text.size() > 2 ? text.substr(text.size() - 2) : "";
@@ -166,9 +178,9 @@ constexpr OptionRow option_rows[] = {
            ->capture_default_str();
        const render::CompareRule rule;
        render::visit(rule, [&](const char* name, const char* meaning, const double&) {
-         app.add_option_function<double>(std::string("--") + name,
-                                         [&o, name](double value) { o.limits.emplace_back(name, value); }, meaning)
-             ->check(CLI::NonNegativeNumber);
+         app.add_option_function<std::string>(std::string("--") + name,
+                                              [&o, name](const std::string& text) { parse_limit(o, name, text); }, meaning)
+             ->type_name("NUMBER");
        });
      }},
     {"ignore",

@@ -1,8 +1,10 @@
 // The command that compares pictures. Its exit status is its answer: 0 same, 1 different, 2 could not compare.
 #include "commands.h"
 #include "compare_report.h"
+#include "interrupt.h"
 #include "message.h"
 #include "output.h"
+#include "printable.h"
 #include "progress.h"
 
 #include "sim/catalogue.h"
@@ -12,6 +14,7 @@
 #include <stdio_ext.h>
 
 #include <charconv>
+#include <new>
 #include <system_error>
 
 namespace app {
@@ -37,7 +40,9 @@ Rectangle rectangle_of(const std::string& text) {
 }
 
 CompareRequest request_of(const Options& options) {
-  CompareRequest request{options.word, options.inputs.front(), {}, options.mask, {}};
+  CompareRequest request{options.word, options.inputs.front(), {}, options.mask, {}, [] {
+                           if (interrupted()) throw CompareStopped{};
+                         }};
   std::vector<std::string_view> names;
   for (const render::ComparePreset& preset : render::compare_presets()) {
     names.push_back(preset.name);
@@ -55,14 +60,16 @@ CompareRequest request_of(const Options& options) {
 
 int compare_as_asked(const Options& options) {
   const CompareRequest request = request_of(options);
-  std::vector<Comparison> all;
+  if (!options.diff.empty()) check_difference_folder(request, options.diff);
+  Comparisons made;
   {
     Progress progress("comparing", options.quiet);
-    all = compare_pictures(request, [&](double share) { progress.show(share, "pictures"); });
+    made = compare_pictures(request, [&](double share) { progress.show(share, "pictures"); });
   }
+  std::vector<Comparison>& all = made.all;
   if (!options.diff.empty()) write_differences(request, all, options.diff);
   if (!options.html.empty()) write_page(request, all, options.html);
-  if (!options.junit.empty()) write_whole_file(options.junit, report_junit(all));
+  if (!options.junit.empty()) write_junit(request, all, options.junit);
   const int status = exit_status(all);
   std::string text;
   if (options.json) text = report_json(request, all);
@@ -71,12 +78,14 @@ int compare_as_asked(const Options& options) {
       if (!options.quiet || c.verdict != Verdict::same) text += report_line(c) + "\n";
   int left = status;
   if (options.update) {
-    const std::vector<std::string> accepted = accept_pictures(request, all);
+    const Accepted accepted = accept_pictures(request, all);
     if (!options.json)
-      for (const std::string& line : accepted) text += line + "\n";
+      for (const std::string& line : accepted.done) text += printable(line) + "\n";
+    for (const std::string& sentence : accepted.refused) tell(printable(sentence));
     left = exit_status(all);
   }
   if (!options.json && !options.quiet) text += report_totals(all) + "\n";
+  if (!made.passed_over.empty()) tell(printable(made.passed_over));
   try {
     write_whole_file("-", text);
   } catch (const std::system_error& error) {
@@ -93,10 +102,15 @@ int compare_as_asked(const Options& options) {
 int compare(const Options& options) {
   try {
     return compare_as_asked(options);
+  } catch (const CompareStopped&) {
+    tell("interrupted; there is no answer");
+    return interrupted_status;
+  } catch (const std::bad_alloc&) {
+    tell("there is not enough memory");
   } catch (const std::exception& error) {
-    tell(error.what());
-    return 2;
+    tell(printable(error.what()));
   }
+  return 2;
 }
 
 }  // namespace app

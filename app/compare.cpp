@@ -4,10 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
+#include <initializer_list>
 #include <map>
 #include <mutex>
+#include <new>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -18,28 +23,72 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_picture(const fs::path& path) { return path.extension() == ".png"; }
+constexpr std::int64_t most_entries = 1'000'000;                     // of a folder, links followed
+constexpr std::uint64_t memory_for_pictures = std::uint64_t{1} << 30;  // bytes, of all pairs under way
 
-/// Beside NAME.png: its mask, and further baselines.
-fs::path mask_of(const fs::path& baseline) { return fs::path(baseline).replace_extension(".mask.png"); }
-
-/// NAME of NAME.alt1.png, with its folder; empty for other names.
-std::string alternative_of(const fs::path& path) {
-  const std::string inner = path.stem().extension().string();
-  return inner.starts_with(".alt") && inner.size() > 4 ? (path.parent_path() / path.stem().stem()).string() : std::string();
+std::string lower_case(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
 }
-bool is_mask(const fs::path& path) { return path.stem().extension() == ".mask"; }
+bool has_extension(const fs::path& path, std::initializer_list<std::string_view> extensions) {
+  return std::find(extensions.begin(), extensions.end(), lower_case(path.extension().string())) != extensions.end();
+}
+bool is_picture(const fs::path& path) { return has_extension(path, {".png"}); }
+bool is_other_picture(const fs::path& path) {
+  return has_extension(path, {".apng", ".avif", ".bmp", ".gif", ".jpeg", ".jpg", ".tif", ".tiff", ".webp"});
+}
 
-/// Relative path of every picture below a folder.
-std::set<std::string> pictures_in(const fs::path& folder) {
-  std::set<std::string> names;
-  try {
-    for (const auto& entry : fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink))
-      if (is_picture(entry.path()) && !entry.is_directory()) names.insert(entry.path().lexically_relative(folder).string());
-  } catch (const fs::filesystem_error& error) {
-    throw std::runtime_error(fmt::format("cannot read folder '{}': {}", folder.string(), error.code().message()));
+/// NAME.png of NAME.alt1.png or NAME.mask.png, with its folder; empty for other names.
+enum class Company { none, alternative, mask };
+std::pair<Company, fs::path> company_of(const fs::path& path) {
+  const std::string inner = path.stem().extension().string();
+  const fs::path base = path.parent_path() / (path.stem().stem().string() + path.extension().string());
+  if (inner == ".mask") return {Company::mask, base};
+  const bool numbered = inner.starts_with(".alt") && inner.size() > 4 && inner.find_first_not_of("0123456789", 4) == std::string::npos;
+  return numbered ? std::pair(Company::alternative, base) : std::pair(Company::none, fs::path());
+}
+
+/// What a folder holds: paths within it, all that links to folders lead to included.
+struct Found {
+  std::set<fs::path> pictures, others;
+  std::int64_t entries = 0;
+};
+
+using FileId = std::pair<dev_t, ino_t>;
+
+/// `above`: the folders on the way here; one that is met again is a loop of links, and holds nothing new.
+void walk(const fs::path& folder, const fs::path& within, std::vector<FileId>& above, const CompareRequest& request, Found& found) {
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) == 0) {
+    const FileId id{status.st_dev, status.st_ino};
+    if (std::find(above.begin(), above.end(), id) != above.end()) return;
+    above.push_back(id);
+  } else {
+    above.emplace_back();
   }
-  return names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (request.look) request.look();
+    if (++found.entries > most_entries)
+      throw std::runtime_error(fmt::format("folder '{}' holds more than {} entries, those that its links lead to included",
+                                           folder.string(), most_entries));
+    std::error_code error;
+    const fs::path name = within / entry.path().filename();
+    if (fs::is_directory(entry.status(error))) walk(entry.path(), name, above, request, found);
+    else if (is_picture(name)) found.pictures.insert(name);
+    else if (is_other_picture(name)) found.others.insert(name);
+  }
+  above.pop_back();
+}
+
+Found pictures_in(const fs::path& folder, const CompareRequest& request) {
+  Found found;
+  std::vector<FileId> above;
+  try {
+    walk(folder, {}, above, request, found);
+  } catch (const fs::filesystem_error& error) {
+    throw std::runtime_error(fmt::format("cannot read folder '{}': {}", (error.path1().empty() ? folder : error.path1()).string(), error.code().message()));
+  }
+  return found;
 }
 
 /// One comparison to be made: the picture and all that it may equal.
@@ -48,53 +97,73 @@ struct Pair {
   fs::path actual;
   std::vector<fs::path> baselines;  ///< NAME.png first, where it exists
   fs::path baseline;                ///< NAME.png
+  fs::path mask;                    ///< its own; empty: none
 };
 
-std::vector<fs::path> alternatives_beside(const fs::path& baseline) {
-  std::vector<fs::path> found;
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
+Pair pair_of_files(const CompareRequest& request) {
+  Pair pair{request.actual.filename().string(), request.actual, {request.expected}, request.expected, {}};
+  const fs::path folder = folder_of(request.expected), other = folder_of(request.actual);
   std::error_code error;
-  const fs::path folder = baseline.has_parent_path() ? baseline.parent_path() : fs::path(".");
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (is_picture(entry.path()) && alternative_of(entry.path()) == (folder / baseline.stem()).string())
-      found.push_back(entry.path());
-  std::sort(found.begin(), found.end());
-  return found;
+  const bool one_folder = fs::equivalent(folder, other, error);
+  std::set<fs::path> alternatives;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const fs::path name = entry.path().filename();
+    const auto [company, of] = company_of(name);
+    if (!is_picture(name) || of != request.expected.filename() || (!one_folder && fs::exists(other / name))) continue;
+    if (company == Company::mask) pair.mask = entry.path();
+    if (company == Company::alternative) alternatives.insert(entry.path());
+  }
+  pair.baselines.insert(pair.baselines.end(), alternatives.begin(), alternatives.end());
+  return pair;
 }
 
-std::vector<Pair> pairs_of(const CompareRequest& request) {
+std::vector<Pair> pairs_of_folders(const CompareRequest& request, const Found& expected, const Found& actual) {
+  std::map<fs::path, Pair> by_name;
+  const auto pair_named = [&](const fs::path& name) -> Pair& {
+    Pair& pair = by_name[name];
+    pair.name = name.string();
+    pair.baseline = request.expected / name;
+    return pair;
+  };
+  for (const fs::path& name : expected.pictures) {
+    const auto [company, of] = company_of(name);
+    const bool own = company == Company::none || actual.pictures.contains(name) ||
+                     !(expected.pictures.contains(of) || actual.pictures.contains(of));
+    Pair& pair = pair_named(own ? name : of);
+    const fs::path path = request.expected / name;
+    if (own) pair.baselines.insert(pair.baselines.begin(), path);
+    else if (company == Company::mask) pair.mask = path;
+    else pair.baselines.push_back(path);
+  }
+  for (const fs::path& name : actual.pictures) pair_named(name).actual = request.actual / name;
+  std::vector<Pair> pairs;
+  for (auto& [name, pair] : by_name) pairs.push_back(std::move(pair));
+  return pairs;
+}
+
+struct Pairs {
+  std::vector<Pair> all;
+  std::string passed_over;
+};
+
+Pairs pairs_of(const CompareRequest& request) {
   for (const fs::path& path : {request.expected, request.actual})
     if (!fs::exists(path)) throw std::runtime_error(fmt::format("there is no file or folder '{}'", path.string()));
   const bool folders = fs::is_directory(request.expected);
   if (folders != fs::is_directory(request.actual))
     throw std::runtime_error(fmt::format("'{}' and '{}' must be two files or two folders", request.expected.string(),
                                          request.actual.string()));
-  std::vector<Pair> pairs;
-  if (!folders) {
-    Pair pair{request.actual.filename().string(), request.actual, {request.expected}, request.expected};
-    for (const fs::path& path : alternatives_beside(request.expected)) pair.baselines.push_back(path);
-    pairs.push_back(std::move(pair));
-    return pairs;
-  }
-  std::map<std::string, Pair> by_name;
-  const auto pair_named = [&](const std::string& name) -> Pair& {
-    Pair& pair = by_name[name];
-    pair.name = name;
-    pair.baseline = request.expected / name;
-    return pair;
-  };
-  for (const std::string& name : pictures_in(request.expected)) {
-    if (is_mask(name)) continue;
-    const std::string of = alternative_of(name);
-    Pair& pair = pair_named(of.empty() ? name : of + ".png");
-    const fs::path path = request.expected / name;
-    if (of.empty()) pair.baselines.insert(pair.baselines.begin(), path);
-    else pair.baselines.push_back(path);
-  }
-  for (const std::string& name : pictures_in(request.actual)) pair_named(name).actual = request.actual / name;
-  for (auto& [name, pair] : by_name) pairs.push_back(std::move(pair));
-  if (pairs.empty())
+  if (!folders) return {{pair_of_files(request)}, {}};
+  const Found expected = pictures_in(request.expected, request), actual = pictures_in(request.actual, request);
+  Pairs pairs{pairs_of_folders(request, expected, actual), {}};
+  if (pairs.all.empty())
     throw std::runtime_error(fmt::format("neither '{}' nor '{}' holds a PNG picture", request.expected.string(),
                                          request.actual.string()));
+  if (const std::size_t n = expected.others.size() + actual.others.size(); n > 0)
+    pairs.passed_over = fmt::format("only PNG pictures are compared: {} of another format {} passed over, such as '{}'", n,
+                                    n == 1 ? "was" : "were", (actual.others.empty() ? expected : actual).others.begin()->string());
   return pairs;
 }
 
@@ -104,54 +173,85 @@ bool better(const Comparison& a, const Comparison& b) {
   return rank(a) != rank(b) ? rank(a) < rank(b) : a.difference.rmse < b.difference.rmse;
 }
 
-Comparison compare_with(const CompareRequest& request, const Pair& pair, const render::Image& actual, const fs::path& path) {
-  Comparison result{pair.name, path, pair.actual, pair.baseline, {}, Verdict::same, {}};
+/// What went wrong, in our words.
+std::string reason(const std::exception& error) {
+  return dynamic_cast<const std::bad_alloc*>(&error) ? "there is not enough memory to compare it" : error.what();
+}
+
+Comparison compare_with(const CompareRequest& request, const Pair& pair, const render::PngFile& actual, const fs::path& path) {
+  Comparison result{pair.name, path, pair.actual, pair.baseline, pair.mask, {}, Verdict::same, {}};
   try {
-    const render::Image expected = render::read_png(path).image;
-    if (expected.width != actual.width || expected.height != actual.height) {
+    const render::PngFile expected = render::read_png(path, request.look);
+    const int width = actual.image.width, height = actual.image.height;
+    if (expected.image.width != width || expected.image.height != height) {
       result.verdict = Verdict::size;
-      result.detail = fmt::format("{} x {} expected, {} x {} made", expected.width, expected.height, actual.width,
-                                  actual.height);
+      result.detail = fmt::format("{} x {} expected, {} x {} made", expected.image.width, expected.image.height, width, height);
       return result;
     }
-    result.difference = render::difference(expected, actual, request.rule,
-                                           ignored_pixels(request, pair.baseline, actual.width, actual.height));
+    result.difference = render::difference(expected, actual, request.rule, ignored_pixels(request, pair.mask, width, height),
+                                           request.look);
     if (result.difference.compared == 0) throw std::runtime_error("the mask leaves nothing to compare");
     const std::vector<std::string> objections = render::objections(result.difference, request.rule);
     if (!objections.empty()) result.verdict = Verdict::different;
     result.detail = fmt::format("{}", fmt::join(objections, ", "));
   } catch (const std::exception& error) {
     result.verdict = Verdict::unreadable;
-    result.detail = error.what();
+    result.detail = reason(error);
   }
   return result;
 }
 
 Comparison compare_pair(const CompareRequest& request, const Pair& pair) {
-  Comparison result{pair.name, {}, pair.actual, pair.baseline, {}, Verdict::missing, {}};
+  Comparison result{pair.name, {}, pair.actual, pair.baseline, pair.mask, {}, Verdict::missing, {}};
   if (pair.actual.empty()) {
     result.expected = pair.baselines.front();
     result.detail = "expected, but not made";
     return result;
   }
-  if (pair.baselines.empty()) {
-    result.verdict = Verdict::fresh;
-    result.detail = "made, but nothing is expected";
-    return result;
-  }
   try {
-    const render::Image actual = render::read_png(pair.actual).image;
+    const render::PngFile actual = render::read_png(pair.actual, request.look);
+    if (pair.baselines.empty()) {
+      result.verdict = Verdict::fresh;
+      result.detail = "made, but nothing is expected";
+    }
     for (std::size_t k = 0; k < pair.baselines.size(); ++k) {
       Comparison one = compare_with(request, pair, actual, pair.baselines[k]);
       if (k == 0 || better(one, result)) result = std::move(one);
     }
   } catch (const std::exception& error) {
-    result.expected = pair.baselines.front();
+    if (!pair.baselines.empty()) result.expected = pair.baselines.front();
     result.verdict = Verdict::unreadable;
-    result.detail = error.what();
+    result.detail = reason(error);
   }
   return result;
 }
+
+/// Bytes that a pair's pictures take.
+std::uint64_t memory_of(const Pair& pair) {
+  std::uint64_t most = 0;
+  for (const fs::path& path : pair.baselines) most = std::max(most, render::png_memory(path));
+  return most + render::png_memory(pair.actual);
+}
+
+/// Lets as many pairs be compared at a time as there is memory for; any pair when it is alone.
+class MemoryGate {
+ public:
+  void enter(std::uint64_t bytes) {
+    std::unique_lock guard(mutex_);
+    left_.wait(guard, [&] { return taken_ == 0 || taken_ + bytes <= memory_for_pictures; });
+    taken_ += bytes;
+  }
+  void leave(std::uint64_t bytes) {
+    const std::lock_guard guard(mutex_);
+    taken_ -= bytes;
+    left_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable left_;
+  std::uint64_t taken_ = 0;
+};
 
 void ignore_white(const fs::path& path, int width, int height, render::Ignored& ignored) {
   const render::Image mask = render::read_png(path).image;
@@ -169,36 +269,46 @@ const VerdictWords& words_of(Verdict verdict) {
                        [verdict](const VerdictWords& w) { return w.verdict == verdict; });
 }
 
-render::Ignored ignored_pixels(const CompareRequest& request, const fs::path& baseline, int width, int height) {
-  const bool own_mask = fs::exists(mask_of(baseline));
-  if (request.ignored.empty() && request.mask.empty() && !own_mask) return {};
+render::Ignored ignored_pixels(const CompareRequest& request, const fs::path& own_mask, int width, int height) {
+  if (request.ignored.empty() && request.mask.empty() && own_mask.empty()) return {};
   render::Ignored ignored(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (const Rectangle& r : request.ignored)
     for (int y = std::max(r.y, 0); y < std::min<long>(height, long{r.y} + r.height); ++y)
       for (int x = std::max(r.x, 0); x < std::min<long>(width, long{r.x} + r.width); ++x)
         ignored[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = 1;
   if (!request.mask.empty()) ignore_white(request.mask, width, height, ignored);
-  if (own_mask) ignore_white(mask_of(baseline), width, height, ignored);
+  if (!own_mask.empty()) ignore_white(own_mask, width, height, ignored);
   return ignored;
 }
 
-std::vector<Comparison> compare_pictures(const CompareRequest& request, const std::function<void(double)>& progress) {
-  const std::vector<Pair> pairs = pairs_of(request);
-  std::vector<Comparison> results(pairs.size());
+Comparisons compare_pictures(const CompareRequest& request, const std::function<void(double)>& progress) {
+  const Pairs pairs = pairs_of(request);
+  Comparisons results{std::vector<Comparison>(pairs.all.size()), pairs.passed_over};
   std::atomic<std::size_t> next = 0, done = 0;
+  std::atomic<bool> stopped = false;
   std::mutex telling;
+  MemoryGate gate;
   const auto work = [&] {
-    for (std::size_t k = next++; k < pairs.size(); k = next++) {
-      results[k] = compare_pair(request, pairs[k]);
+    for (std::size_t k = next++; k < pairs.all.size() && !stopped; k = next++) {
+      const std::uint64_t memory = memory_of(pairs.all[k]);
+      gate.enter(memory);
+      try {
+        if (request.look) request.look();
+        results.all[k] = compare_pair(request, pairs.all[k]);
+      } catch (const CompareStopped&) {
+        stopped = true;
+      }
+      gate.leave(memory);
       const std::lock_guard guard(telling);
-      progress(static_cast<double>(++done) / static_cast<double>(pairs.size()));
+      progress(static_cast<double>(++done) / static_cast<double>(pairs.all.size()));
     }
   };
   std::vector<std::jthread> helpers;
-  const std::size_t threads = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), pairs.size());
+  const std::size_t threads = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), pairs.all.size());
   for (std::size_t k = 1; k < threads; ++k) helpers.emplace_back(work);
   work();
   helpers.clear();
+  if (stopped) throw CompareStopped{};
   return results;
 }
 
@@ -208,20 +318,51 @@ int exit_status(const std::vector<Comparison>& all) {
   return status;
 }
 
-std::vector<std::string> accept_pictures(const CompareRequest& request, std::vector<Comparison>& all) {
-  std::vector<std::string> lines;
+bool stays_within(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  if (fs::is_symlink(fs::symlink_status(file, error))) return false;
+  error.clear();  // it need not be there
+  const auto resolved = [&](const fs::path& path) { return error ? path : fs::weakly_canonical(fs::absolute(path), error); };
+  const fs::path root = resolved(folder), place = resolved(folder_of(file));
+  return !error && std::mismatch(root.begin(), root.end(), place.begin(), place.end()).first == root.end();
+}
+
+namespace {
+
+/// Takes one picture; the line that says so.
+std::string accept_picture(const CompareRequest& request, const Comparison& c) {
+  const bool folders = fs::is_directory(request.expected);
+  const fs::path target = folders ? request.expected / c.name : request.expected;
+  if (folders && !stays_within(request.expected, target))
+    throw std::runtime_error(fmt::format("a link leads from '{}' to somewhere else", target.string()));
+  const std::string bytes = read_whole_file(c.actual);
+  render::png_from(bytes, c.actual);  // whatever was compared: from here on this is what is expected
+  const bool there = fs::exists(target);
+  std::error_code error;
+  if (target.has_parent_path()) fs::create_directories(target.parent_path(), error);
+  write_whole_file(target, bytes);
+  return there ? fmt::format("{} replaced: {}", target.string(), c.detail) : fmt::format("{} added", target.string());
+}
+
+}  // namespace
+
+Accepted accept_pictures(const CompareRequest& request, std::vector<Comparison>& all) {
+  Accepted accepted;
   for (Comparison& c : all) {
     const bool takes = c.verdict == Verdict::different || c.verdict == Verdict::size || c.verdict == Verdict::fresh;
     if (!takes) continue;
-    const fs::path target = fs::is_directory(request.expected) ? request.expected / c.name : request.expected;
-    const bool there = fs::exists(target);
-    std::error_code error;
-    if (target.has_parent_path()) fs::create_directories(target.parent_path(), error);
-    write_whole_file(target, read_whole_file(c.actual));
-    lines.push_back(there ? fmt::format("{} replaced: {}", target.string(), c.detail) : fmt::format("{} added", target.string()));
-    c.verdict = Verdict::same;
+    try {
+      if (request.look) request.look();
+      accepted.done.push_back(accept_picture(request, c));
+      c.verdict = Verdict::same;
+    } catch (const CompareStopped&) {
+      accepted.refused.emplace_back("interrupted; the remaining pictures are not accepted");
+      break;
+    } catch (const std::exception& error) {
+      accepted.refused.push_back(fmt::format("{} is not accepted: {}", c.name, error.what()));
+    }
   }
-  return lines;
+  return accepted;
 }
 
 }  // namespace app

@@ -1,8 +1,9 @@
 // Two pictures side by side: how far they differ, and whether a rule lets that pass.
 #pragma once
 
-#include "image.h"
+#include "flip.h"
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -15,9 +16,11 @@ struct CompareRule {
   double channel = 2;       ///< a pixel differs when one of its channels differs by more, 8-bit units
   double pixels = 10;       ///< so many pixels may differ in any picture
   double share = 2e-5;      ///< ... or this share of its pixels, whichever is more
-  double rmse = 0.15;       ///< root mean square over all channels, 8-bit units
+  double largest = 48;      ///< no channel may differ by more, 8-bit units
+  double rmse = 0.15;       ///< root mean square over the colours, 8-bit units; alpha adds to it where it differs
   double flip_mean = std::numeric_limits<double>::infinity();  ///< mean of the FLIP map, 0..1
   double flip_max = std::numeric_limits<double>::infinity();   ///< its largest value
+  double flip_spot = std::numeric_limits<double>::infinity();  ///< the same where the pictures differ in one spot only
   double ppd = 67;          ///< pixels per degree of sight that FLIP supposes
 };
 
@@ -28,11 +31,17 @@ void visit(R& r, V&& v) {
   v("channel", "a pixel differs when one of its channels differs by more than this, of 255", r.channel);
   v("pixels", "so many pixels may differ in any picture", r.pixels);
   v("share", "or this share of its pixels, whichever is more", r.share);
+  v("largest", "no channel of any pixel may differ by more than this, of 255", r.largest);
   v("rmse", "largest root mean square difference over all channels, of 255", r.rmse);
   v("flip-mean", "largest mean of the FLIP map, 0 to 1", r.flip_mean);
   v("flip-max", "largest single value of the FLIP map, 0 to 1", r.flip_max);
+  v("flip-spot", "the same where all that differs lies within a 16th of the picture, as no other driver does it", r.flip_spot);
   v("ppd", "pixels per degree of sight that FLIP supposes", r.ppd);
 }
+
+/// Throws std::invalid_argument with one sentence: the limit `name` (of visit()) is 0 or more, and may be infinite; ppd is from
+/// flip_least_ppd to flip_most_ppd.
+void check_limit(std::string_view name, double value);
 
 struct ComparePreset {
   std::string_view name, meaning;
@@ -41,20 +50,24 @@ struct ComparePreset {
 /// exact, default, perceptual.
 std::span<const ComparePreset> compare_presets();
 
-/// Pixels that do not count: width x height, not zero where ignored; empty: all count.
-using Ignored = std::vector<std::uint8_t>;
-
 struct ImageDifference {
   std::int64_t compared = 0;  ///< pixels that counted
-  int maximum = 0;            ///< largest difference of a channel
+  double maximum = 0;         ///< largest difference of a channel, in 8-bit units; a fraction where samples have 16 bits
   std::int64_t above = 0;     ///< pixels with a channel that differs by more than the rule's
-  double rmse = 0;            ///< over all channels, in 8-bit units
+  double rmse = 0;            ///< in 8-bit units
   int left = 0, top = 0, right = 0, bottom = 0;  ///< smallest box around the pixels above; right and bottom excluded
   std::optional<double> flip_mean, flip_max;     ///< when the rule asks for them
+  bool spot = false;                             ///< is that box not empty, and at most a 16th of what counted?
+  std::vector<std::string> declared;             ///< what the files say differently about equal samples, a phrase each
 };
 
-/// Measures what the rule needs. Red, green, blue count, and alpha when one of the pictures has it.
+/// Measures what the rule needs. Red, green, blue count, and alpha when one of the pictures has it; samples of 16 bits count
+/// with all of them, but in FLIP. What the files declare of colours and animation is compared, too. Ignored pixels count
+/// nowhere. `look` is called now and then, and may throw to end all.
 /// Throws std::invalid_argument when sizes differ.
+ImageDifference difference(const PngFile& expected, const PngFile& actual, const CompareRule& = {}, const Ignored& = {},
+                           const std::function<void()>& look = {});
+/// The same of pictures that are no files.
 ImageDifference difference(const Image& expected, const Image& actual, const CompareRule& = {}, const Ignored& = {});
 
 /// What the rule objects to, one phrase each; empty: the same picture.

@@ -2,6 +2,8 @@
 
 #include "srgb.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -126,9 +128,11 @@ struct Sensitivity {
 };
 constexpr Sensitivity achromatic{1, 0.0047, 0, 1e-5}, red_green{1, 0.0053, 0, 1e-5}, blue_yellow{34.1, 0.04, 13.5, 0.025};
 
+/// Three standard deviations of the widest of these filters, for all.
+int radius_of_sight(double ppd) { return static_cast<int>(std::ceil(3 * std::sqrt(blue_yellow.b1 / (2 * pi * pi)) * ppd)); }
+
 Plane seen(const Plane& in, Size size, const Sensitivity& s, double ppd) {
-  // Three standard deviations of the widest of the filters, for all.
-  const int radius = static_cast<int>(std::ceil(3 * std::sqrt(blue_yellow.b1 / (2 * pi * pi)) * ppd));
+  const int radius = radius_of_sight(ppd);
   const auto gauss = [&](double b) {
     return sampled(radius, [&](int i) { return std::exp(-pi * pi * (i / ppd) * (i / ppd) / b); });
   };
@@ -148,10 +152,15 @@ struct Features {
   Plane edges, points;
 };
 
-Features features_of(const Plane& lightness, Size size, double ppd) {
+double deviation_of_edges(double ppd) {
   constexpr double width = 0.082;  // of an edge in degrees
-  const double sd = 0.5 * width * ppd;
-  const int radius = static_cast<int>(std::ceil(3 * sd));
+  return 0.5 * width * ppd;
+}
+int radius_of_edges(double ppd) { return static_cast<int>(std::ceil(3 * deviation_of_edges(ppd))); }
+
+Features features_of(const Plane& lightness, Size size, double ppd) {
+  const double sd = deviation_of_edges(ppd);
+  const int radius = radius_of_edges(ppd);
   const auto gauss = [&](int i) { return std::exp(-0.5 * i * i / (sd * sd)); };
   const Kernel plain = sampled(radius, gauss);
   Kernel slope = sampled(radius, [&](int i) { return -i * gauss(i); });
@@ -203,14 +212,10 @@ Planes seen_colours(const Planes& in, Size size, double ppd) {
   return out;
 }
 
-}  // namespace
-
-std::vector<float> flip(const Image& reference, const Image& test, double ppd) {
-  if (reference.width != test.width || reference.height != test.height)
-    throw std::invalid_argument("FLIP needs pictures of one size");
+/// The whole map at once: some twenty planes of floating-point numbers.
+std::vector<float> flip_at_once(const Image& reference, const Image& test, double ppd) {
   constexpr float qc = 0.7F, pc = 0.4F, pt = 0.95F, qf = 0.5F;
   const Size size{reference.width, reference.height};
-  if (size.pixels() == 0) return {};
   std::array<Planes, 2> colours;
   std::array<Features, 2> features;
   for (const std::size_t which : {0U, 1U}) {
@@ -233,6 +238,76 @@ std::vector<float> flip(const Image& reference, const Image& test, double ppd) {
                                             std::abs(features[0].points[i] - features[1].points[i])) / std::sqrt(2.F), qf);
     map[i] = std::min(std::pow(colour, 1 - feature), 1.F);
   }
+  return map;
+}
+
+Image cut(const Image& image, const FlipTile& t) {
+  Image part(t.right - t.left, t.bottom - t.top, image.channels);
+  for (int y = t.top; y < t.bottom; ++y)
+    std::copy(image.at(t.left, y), image.at(t.right - 1, y) + image.channels, part.at(0, y - t.top));
+  return part;
+}
+
+/// Where a pixel does not count, nothing is different: what is hidden must not shine into its surroundings either.
+void hide(const FlipTile& t, const Ignored& ignored, int width, Image& reference, Image& test) {
+  for (int y = t.top; y < t.bottom; ++y)
+    for (int x = t.left; x < t.right; ++x) {
+      if (ignored[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] == 0) continue;
+      std::uint8_t *from = reference.at(x - t.left, y - t.top), *to = test.at(x - t.left, y - t.top);
+      if (reference.channels > test.channels) from[3] = 255;
+      for (int c = 0; c < test.channels; ++c) to[c] = c < reference.channels ? from[c] : 255;
+    }
+}
+
+/// Does a picture with alpha show the very colours of one without?
+bool equal_pictures(const Image& a, const Image& b) {
+  if (a.channels == b.channels) return a.pixels == b.pixels;
+  const Image &three = a.channels == 3 ? a : b, &four = a.channels == 3 ? b : a;
+  for (std::size_t i = 0, n = three.pixels.size() / 3; i < n; ++i)
+    if (!std::equal(&three.pixels[3 * i], &three.pixels[3 * i] + 3, &four.pixels[4 * i]) || four.pixels[4 * i + 3] != 255)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+void flip_by_tiles(const Image& reference, const Image& test, double ppd, const Ignored& ignored, const FlipVisitor& visit) {
+  if (reference.width != test.width || reference.height != test.height)
+    throw std::invalid_argument("FLIP needs pictures of one size");
+  if (!(ppd >= flip_least_ppd && ppd <= flip_most_ppd))
+    throw std::invalid_argument(
+        fmt::format("FLIP is defined here for {} to {} pixels per degree, not {}", flip_least_ppd, flip_most_ppd, ppd));
+  // Each pixel of the map depends on its surroundings as far as the widest filter reaches: a tile is computed with so much
+  // more on each side, where there is more, and gets the very bits that it would get in the whole picture.
+  const int reach = std::max(radius_of_sight(ppd), radius_of_edges(ppd)), side = std::max(192, 4 * reach);
+  const int width = reference.width, height = reference.height;
+  for (int top = 0; top < height; top += side)
+    for (int left = 0; left < width; left += side) {
+      const FlipTile tile{left, top, std::min(left + side, width), std::min(top + side, height)};
+      const FlipTile wide{std::max(left - reach, 0), std::max(top - reach, 0), std::min(tile.right + reach, width),
+                          std::min(tile.bottom + reach, height)};
+      Image before = cut(reference, wide), after = cut(test, wide);
+      if (!ignored.empty()) hide(wide, ignored, width, before, after);
+      const bool equal = equal_pictures(before, after);  // the map is zero then
+      const std::vector<float> map = equal ? std::vector<float>() : flip_at_once(before, after, ppd);
+      std::vector<float> core(static_cast<std::size_t>(tile.right - left) * static_cast<std::size_t>(tile.bottom - top));
+      auto out = core.begin();
+      for (int y = top; y < tile.bottom && !equal; ++y) {
+        const auto row = map.begin() + static_cast<std::ptrdiff_t>(y - wide.top) * (wide.right - wide.left) + (left - wide.left);
+        out = std::copy(row, row + (tile.right - left), out);
+      }
+      visit(tile, core);
+    }
+}
+
+std::vector<float> flip(const Image& reference, const Image& test, double ppd) {
+  std::vector<float> map(static_cast<std::size_t>(reference.width) * static_cast<std::size_t>(reference.height));
+  flip_by_tiles(reference, test, ppd, {}, [&](const FlipTile& tile, const std::vector<float>& part) {
+    const std::ptrdiff_t columns = tile.right - tile.left;
+    for (int y = tile.top; y < tile.bottom; ++y)
+      std::copy_n(part.begin() + (y - tile.top) * columns, columns,
+                  map.begin() + static_cast<std::ptrdiff_t>(y) * reference.width + tile.left);
+  });
   return map;
 }
 

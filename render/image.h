@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -50,12 +52,20 @@ std::string png_bytes(const Image& image, const PngText& text = {}, int compress
 struct PngFile {
   Image image;  ///< RGB, or RGBA when the file has transparency
   PngText text;
+  std::vector<std::uint8_t> lower_bytes;  ///< of samples of 16 bits, whose upper ones are the image; else empty
+  std::string colours;    ///< other than sRGB, the file declares its samples to be this: "gamma 1", "ICC profile 'P3' (12ab34cd)"
+  std::string animation;  ///< of how many frames, and a checksum of them; empty: a still
 };
-/// Throws std::runtime_error with one sentence: cannot be opened, is no PNG file, is larger than 1 GiB when unpacked, or is
-/// damaged (and how). No memory is taken for a size that the file's own length cannot hold.
-PngFile read_png(const std::filesystem::path& path);
+/// Throws std::runtime_error with one sentence: cannot be opened, is no PNG file (but what else), is larger than 1 GiB when
+/// unpacked, or is damaged (and how). No memory is taken for a size that the file's own length cannot hold.
+/// `look` is called now and then, and may throw to end it.
+PngFile read_png(const std::filesystem::path& path, const std::function<void()>& look = {});
+/// From the bytes of a file; `name` is for messages.
+PngFile png_from(std::string_view bytes, const std::filesystem::path& name);
 /// The same from an open file, which is left open; `name` is for messages.
-PngFile read_png(std::FILE* file, const std::filesystem::path& name);
+PngFile read_png(std::FILE* file, const std::filesystem::path& name, const std::function<void()>& look = {});
+/// Bytes that the picture takes in memory by its header alone; 0 where there is none.
+std::uint64_t png_memory(const std::filesystem::path& path);
 /// The text chunks alone; the whole file is read and checked for damage all the same.
 PngText read_png_text(const std::filesystem::path& path);
 

@@ -30,11 +30,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   std::FILE* file = fmemopen(input.data(), input.size(), "rb");
   if (!file) return 0;
   fuzz::accepted([&] {
-    const render::Image image = render::read_png(file, "input").image;
+    const render::PngFile read = render::read_png(file, "input");
+    const render::Image& image = read.image;
     const auto expected = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
                           static_cast<std::size_t>(image.channels);
     if (image.pixels.size() != expected || (image.channels != 3 && image.channels != 4))
       fuzz::broken("a picture has width x height x 3 or 4 bytes");
+    if (!read.lower_bytes.empty() && read.lower_bytes.size() != expected) fuzz::broken("each sample has a lower byte, or none has");
   });
   std::fclose(file);
   return 0;

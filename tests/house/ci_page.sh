@@ -29,3 +29,8 @@ status=0
 [ "$status" -eq 1 ] || fail "another shape gave status $status instead of 1"
 grep -q 'failures="3" errors="0"' report/pictures.xml || fail "the JUnit report does not tell the failures"
 grep -q 'data:image/png;base64' report/index.html || fail "the page has no pictures"
+# No pictures, no answer.
+echo 'reduced_volume = "much"' >>scene.toml
+status=0
+./check-pictures.sh >../log 2>&1 || status=$?
+[ "$status" -eq 2 ] || fail "a scene that cannot be read gave status $status instead of 2"
