@@ -96,6 +96,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
   if (options.resume) {
     file.emplace(TrajectoryWriter::resume(options.trajectory));
     d = deserialised(file->resume_payload());
+    if (observer.on_ready) observer.on_ready();
   } else {
     d = initial_dynamics(setting);
     const TrajectoryHeader header{options.scene_text, options.program, options.build, resolution_warnings(setting, d)};
@@ -104,7 +105,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
     const State first = evaluate(setting, d);
     const TrajectoryLayout layout = layout_for(scene, d);
     mark_saved(d, first);
-    file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d)));
+    file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d), observer.on_ready));
     if (observer.on_state) observer.on_state(first);
   }
 

@@ -19,6 +19,7 @@ struct SimulationOptions {
 /// Called from the thread that simulates.
 struct SimulationObserver {
   std::function<void(const Dynamics&, const StepRecord&)> on_step;
+  std::function<void()> on_ready;     ///< once, before the file appears or changes: the scene can be simulated
   std::function<void(const State&)> on_state;
   std::function<void(const std::string&)> on_warning;
   std::function<bool()> should_stop;  ///< asked after every step

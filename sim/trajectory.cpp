@@ -6,7 +6,7 @@
 
 #include <chrono>
 #include <cstring>
-
+#include <optional>
 #include <stdexcept>
 
 namespace sim {
@@ -25,7 +25,10 @@ struct OpenFile {
   file::Descriptor descriptor;
   std::vector<file::Place> state_places, step_places;
 
-  OpenFile(const std::filesystem::path& p, bool writable) : path(p), map(file::map(p)), descriptor(p, writable) {
+  OpenFile(const std::filesystem::path& p, bool writable) : OpenFile(p, writable, p) {}
+  /// A draft, which will be called `name`.
+  OpenFile(const std::filesystem::path& p, bool writable, const std::filesystem::path& name)
+      : path(name), map(file::map(p)), descriptor(p, writable, name) {
     for (const rows::Column& c : rows::state_columns(map.layout)) state_places.push_back(map.at(c.name));
     for (const rows::Column& c : rows::step_columns(map.layout)) step_places.push_back(map.at(c.name));
   }
@@ -134,8 +137,10 @@ struct OpenFile {
 
 }  // namespace
 
+bool holds_trajectory(const std::filesystem::path& path) { return file::holds_mark(path); }
+
 struct TrajectoryWriter::Impl {
-  file::Lock lock;
+  std::optional<file::Lock> lock;      ///< none before the file has its name: then its draft is locked
   OpenFile file;
   std::int64_t states = 0, steps = 0;  ///< committed
   std::int64_t last_state_step = -1;
@@ -144,7 +149,7 @@ struct TrajectoryWriter::Impl {
   std::uint64_t sequence = 0;          ///< of the last resume payload
   std::chrono::steady_clock::time_point last_append = std::chrono::steady_clock::now();
 
-  Impl(file::Lock l, const std::filesystem::path& path) : lock(std::move(l)), file(path, true) {}
+  explicit Impl(OpenFile f) : file(std::move(f)) {}
 
   /// A new file with room for at least so much; used rows are copied, then it takes the old one's name.
   void grow(std::int64_t state_rows, std::int64_t step_rows, std::int64_t resume_numbers) {
@@ -152,9 +157,10 @@ struct TrajectoryWriter::Impl {
     layout.states = std::max(layout.states, state_rows);
     layout.steps = std::max(layout.steps, step_rows);
     layout.resume = std::max(layout.resume, resume_numbers);
-    const std::filesystem::path path = file.path, draft = file::temporary(path);
-    file::create(draft, layout, file.map.header);
-    OpenFile larger(draft, true);
+    const std::filesystem::path path = file.path;
+    Draft draft = file::draft(path);
+    file::create(draft, path, layout, file.map.header);
+    OpenFile larger(draft.path(), true, path);
     std::vector<char> buffer(std::size_t{1} << 20);
     const auto copy = [&](std::string_view name, std::uint64_t rows) {
       const file::Place &from = file.map.at(name), &to = larger.map.at(name);
@@ -172,9 +178,9 @@ struct TrajectoryWriter::Impl {
     copy("notes", file::note_rows);
     for (const char* counter : {"count", "steps/count", "notes_count"}) copy(counter, 1);
     if (const OpenFile::Slot slot = file.newest_slot(); slot.sequence > 0) larger.write_slot(slot);
-    file::publish(path);
-    larger.path = path;
+    file::publish(draft, path, false);
     file = std::move(larger);
+    lock.emplace(std::move(draft));
   }
 
   void append_steps(std::span<const StepRecord> records) {
@@ -227,37 +233,40 @@ TrajectoryWriter::TrajectoryWriter(TrajectoryWriter&&) noexcept = default;
 TrajectoryWriter& TrajectoryWriter::operator=(TrajectoryWriter&&) noexcept = default;
 TrajectoryWriter::~TrajectoryWriter() = default;
 
-TrajectoryWriter TrajectoryWriter::create(const std::filesystem::path& path, const TrajectoryLayout& layout,
+TrajectoryWriter TrajectoryWriter::create(const std::filesystem::path& name, const TrajectoryLayout& layout,
                                           const TrajectoryHeader& header, const State& first,
-                                          std::span<const double> resume_payload) {
+                                          std::span<const double> resume_payload, const std::function<void()>& ready) {
   TrajectoryLayout room = layout;
   room.states = std::max<std::int64_t>(room.states, 1);
   room.steps = std::max<std::int64_t>(room.steps, 1);
   room.resume = std::max<std::int64_t>({room.resume, static_cast<std::int64_t>(resume_payload.size()), 1});
-  file::Lock lock(path);
-  const std::filesystem::path draft = file::temporary(path);
-  try {
-    file::create(draft, room, header);
-    auto impl = std::make_unique<Impl>(std::move(lock), draft);
-    impl->append(first);
-    impl->write_resume(resume_payload);
-    file::publish(path);
-    impl->file.path = path;
-    return TrajectoryWriter(std::move(impl));
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(draft, ignored);
-    throw;
+  const std::filesystem::path path = destination(name);
+  // Whoever writes what is there now is not disturbed; nobody else begins while this one is put in its place.
+  std::optional<file::Lock> former;
+  if (std::filesystem::exists(path)) {
+    file::require_ours(path);
+    former.emplace(path);
   }
+  remove_dead_drafts(path.parent_path());
+  Draft draft = file::draft(path);
+  file::create(draft, path, room, header);
+  auto impl = std::make_unique<Impl>(OpenFile(draft.path(), true, path));
+  impl->append(first);
+  impl->write_resume(resume_payload);
+  if (ready) ready();
+  file::publish(draft, path, !former);
+  impl->lock.emplace(std::move(draft));
+  return TrajectoryWriter(std::move(impl));
 }
 
-TrajectoryWriter TrajectoryWriter::resume(const std::filesystem::path& path) {
+TrajectoryWriter TrajectoryWriter::resume(const std::filesystem::path& name) {
+  const std::filesystem::path path = destination(name);
   if (!std::filesystem::exists(path))
     throw std::runtime_error(fmt::format("cannot resume '{}': no such file", path.string()));
   file::Lock lock(path);
-  std::error_code ignored;
-  std::filesystem::remove(file::temporary(path), ignored);  // of a growth that was killed
-  auto impl = std::make_unique<Impl>(std::move(lock), path);
+  remove_dead_drafts(path.parent_path());  // of a growth that was killed
+  auto impl = std::make_unique<Impl>(OpenFile(path, true));
+  impl->lock.emplace(std::move(lock));
   impl->states = impl->file.committed("count", "checksum");
   impl->steps = impl->file.committed("steps/count", "steps/checksum");
   if (impl->states == 0) throw std::runtime_error(fmt::format("trajectory '{}' has no intact state", path.string()));

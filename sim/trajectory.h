@@ -1,6 +1,6 @@
 // The trajectory file: one HDF5 file that is readable at every instant and survives a kill at any.
 //
-// All HDF5 metadata is written once, at creation, in NAME.tmp, which takes its name when header and state 0 are
+// All HDF5 metadata is written once, at creation, in a draft, which takes its name when header and state 0 are
 // complete. Afterwards rows are written with pwrite at the offsets HDF5 gave, and an 8-byte counter, written last,
 // commits them. A state that append() has returned from is in the file, whatever happens next. See docs/trajectory.md.
 #pragma once
@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -76,12 +77,18 @@ void visit(R& r, V&& v) {
   v("relabelled", "1 when this step moved the grid points along the membrane", r.relabelled);
 }
 
-/// Writes one trajectory; holds NAME.lock, so that a second writer is refused.
+/// Is this file a trajectory of this program, damaged or not? False also where nothing is, or nothing that can be read.
+bool holds_trajectory(const std::filesystem::path&);
+
+/// Writes one trajectory and holds a lock on the file, so that a second writer is refused by whatever name.
 class TrajectoryWriter {
  public:
-  /// A new file with its first state; an existing file is replaced. Errors are std::runtime_error with one sentence.
+  /// A new file with its first state; an existing trajectory is replaced, a link is written through, anything else is left as
+  /// it is. `ready` is called when nothing but the name is missing; what it throws ends the creation. Errors are
+  /// std::runtime_error with one sentence.
   static TrajectoryWriter create(const std::filesystem::path&, const TrajectoryLayout&, const TrajectoryHeader&,
-                                 const State& first, std::span<const double> resume_payload);
+                                 const State& first, std::span<const double> resume_payload,
+                                 const std::function<void()>& ready = {});
   /// Continues an existing file after its last state.
   static TrajectoryWriter resume(const std::filesystem::path&);
 

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -12,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace sim::file {
@@ -20,6 +20,9 @@ namespace {
 
 // More than any simulation has: a file that says otherwise is damaged, and takes no memory.
 constexpr std::uint64_t largest_text = 16 << 20, largest_row = std::uint64_t{4} << 30;
+
+constexpr const char content_mark[] = "tanktread trajectory";
+constexpr std::string_view signature = "\211HDF\r\n\032\n";
 
 __extension__ using Wide = unsigned __int128;  // products of sizes cannot overflow
 
@@ -173,19 +176,20 @@ void check_space(const std::filesystem::path& path, Wide bytes) {
 constexpr std::uint64_t metadata_bytes = 65536;  // of HDF5, at the head of the file
 
 /// The file as HDF5 makes it, with all datasets allocated and nothing in them but the scene.
-void create_with_hdf5(const std::filesystem::path& path, const std::vector<Dataset>& all, const TrajectoryLayout& layout,
+void create_with_hdf5(const std::filesystem::path& draft, const std::vector<Dataset>& all, const TrajectoryLayout& layout,
                       const TrajectoryHeader& header) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   try {
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation, false);  // or the root group carries the time of day
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_file_locking(access, false, true);  // the draft is locked already
     H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // checksummed metadata, no consistency flags
     H5Pset_meta_block_size(access, metadata_bytes);                // all of it at the head of the file
-    Handle h5(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
+    Handle h5(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
 
     write_number(h5, "format", trajectory_format);
-    write_text(h5, "content", "tanktread trajectory");
+    write_text(h5, "content", content_mark);
     write_text(h5, "program", header.program);
     write_text(h5, "build", header.build);
     std::string warnings;
@@ -216,7 +220,7 @@ void create_with_hdf5(const std::filesystem::path& path, const std::vector<Datas
     }
     h5.close();
   } catch (const std::runtime_error&) {
-    throw std::runtime_error(fmt::format("cannot create trajectory '{}': {}", path.string(), hdf5_reason()));
+    throw std::runtime_error(hdf5_reason());
   }
 }
 
@@ -232,25 +236,18 @@ void try_to_write(int file, std::uint64_t file_bytes, std::uint64_t first_bytes)
 
 }  // namespace
 
-void create(const std::filesystem::path& path, const TrajectoryLayout& layout, const TrajectoryHeader& header) {
+void create(const Draft& draft, const std::filesystem::path& path, const TrajectoryLayout& layout,
+            const TrajectoryHeader& header) {
   const std::vector<Dataset> all = datasets(layout, header.scene.size());
   const Wide bytes = total_bytes(all);
   check_space(path, bytes);
-  // Nobody else's file or link is written through: the draft is new.
-  ::unlink(path.c_str());
-  const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
-  if (file < 0) fail("create", path, errno);
   try {
-    try_to_write(file, static_cast<std::uint64_t>(bytes) + metadata_bytes, metadata_bytes + header.scene.size());
-    ::close(file);
-    create_with_hdf5(path, all, layout, header);
+    try_to_write(draft.descriptor(), static_cast<std::uint64_t>(bytes) + metadata_bytes, metadata_bytes + header.scene.size());
+    create_with_hdf5(draft.path(), all, layout, header);
   } catch (const int reason) {
-    ::close(file);
-    ::unlink(path.c_str());
-    fail("create", path, reason);
-  } catch (...) {
-    ::unlink(path.c_str());
-    throw;
+    fail("create trajectory", path, reason);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("cannot create trajectory '{}': {}", path.string(), error.what()));
   }
 }
 
@@ -312,9 +309,9 @@ Map map(const std::filesystem::path& path) {
   if (::stat(path.c_str(), &status) != 0) fail("read trajectory", path, errno);
   if (!S_ISREG(status.st_mode)) throw std::runtime_error(fmt::format("'{}' is not a file", path.string()));
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  char signature[8] = {};
-  if (size >= sizeof signature) file.read(0, signature, sizeof signature);
-  if (std::memcmp(signature, "\211HDF\r\n\032\n", sizeof signature) != 0)
+  char start[8] = {};
+  if (size >= sizeof start) file.read(0, start, sizeof start);
+  if (std::string_view(start, sizeof start) != signature)
     throw std::runtime_error(fmt::format("'{}' is not a trajectory: it is no HDF5 file", path.string()));
 
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -343,8 +340,8 @@ Map map(const std::filesystem::path& path) {
                                        format, trajectory_format));
 }
 
-Descriptor::Descriptor(const std::filesystem::path& path, bool writable)
-    : path_(path), fd_(::open(path.c_str(), (writable ? O_RDWR : O_RDONLY) | O_CLOEXEC)) {
+Descriptor::Descriptor(const std::filesystem::path& path, bool writable, const std::filesystem::path& name)
+    : path_(name), fd_(::open(path.c_str(), (writable ? O_RDWR : O_RDONLY) | O_CLOEXEC)) {
   if (fd_ < 0) fail(writable ? "write trajectory" : "read trajectory", path, errno);
 }
 Descriptor::Descriptor(Descriptor&& other) noexcept
@@ -390,42 +387,67 @@ std::uint64_t Descriptor::inode() const {
   return ::fstat(fd_, &status) == 0 ? status.st_ino : 0;
 }
 
-Lock::Lock(const std::filesystem::path& path) : path_(path.string() + ".lock") {
+Lock::Lock(const std::filesystem::path& path) {
   for (;;) {
-    fd_ = ::open(path_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (fd_ < 0) fail("write", path_, errno);
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+    fd_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
+    if (fd_ < 0) fail("write trajectory", path, errno);
+    if (!lock_file(fd_)) {
       ::close(std::exchange(fd_, -1));
       throw std::runtime_error(fmt::format("another process is writing '{}'", path.string()));
     }
-    // The holder before us may have removed the file between our open and our lock.
+    // The holder before us may have put a larger file in its place between our open and our lock.
     struct stat ours{}, named{};
-    if (::fstat(fd_, &ours) == 0 && ::stat(path_.c_str(), &named) == 0 && ours.st_ino == named.st_ino) return;
+    if (::fstat(fd_, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino &&
+        ours.st_dev == named.st_dev)
+      return;
     ::close(std::exchange(fd_, -1));
   }
 }
-Lock::Lock(Lock&& other) noexcept : path_(std::move(other.path_)), fd_(std::exchange(other.fd_, -1)) {}
+Lock::Lock(Lock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
 Lock& Lock::operator=(Lock&& other) noexcept {
-  std::swap(path_, other.path_);
   std::swap(fd_, other.fd_);
   return *this;
 }
-Lock::~Lock() {
-  if (fd_ < 0) return;
-  ::unlink(path_.c_str());
-  ::close(fd_);
+Lock::~Lock() { if (fd_ >= 0) ::close(fd_); }
+
+void require_ours(const std::filesystem::path& path) {
+  struct stat status{};
+  if (::stat(path.c_str(), &status) != 0) return;
+  if (!S_ISREG(status.st_mode))
+    throw std::runtime_error(fmt::format("'{}' is not a file; a trajectory cannot take its place", path.string()));
+  if (status.st_size == 0) return;
+  if (!holds_mark(path))
+    throw std::runtime_error(fmt::format("'{}' is not a trajectory of this program and is left as it is; give another name",
+                                         path.string()));
 }
 
-std::filesystem::path temporary(const std::filesystem::path& path) { return path.string() + ".tmp"; }
+bool holds_mark(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return false;
+  // HDF5 keeps the texts of attributes as they are, at the head of the file: seen also where HDF5 itself finds damage.
+  std::string head(metadata_bytes, '\0');
+  const ssize_t got = ::pread(file, head.data(), head.size(), 0);
+  ::close(file);
+  head.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  return head.starts_with(signature) && head.find(content_mark) != std::string::npos;
+}
 
-void publish(const std::filesystem::path& path) {
-  Descriptor(temporary(path), true).sync(false);
-  if (::rename(temporary(path).c_str(), path.c_str()) != 0) fail("write trajectory", path, errno);
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return;
-  ::fsync(fd);
-  ::close(fd);
+Draft draft(const std::filesystem::path& path) {
+  try {
+    return Draft(path);
+  } catch (const std::system_error& error) {
+    fail("create trajectory", path, error.code().value());
+  }
+}
+
+void publish(Draft& draft, const std::filesystem::path& path, bool fresh) {
+  try {
+    draft.publish(path, fresh);
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::file_exists)
+      throw std::runtime_error(fmt::format("another process has made '{}' meanwhile", path.string()));
+    fail("write trajectory", path, error.code().value());
+  }
 }
 
 }  // namespace sim::file
