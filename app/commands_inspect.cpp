@@ -6,6 +6,7 @@
 #include "message.h"
 #include "mesh_export.h"
 #include "output.h"
+#include "owned_files.h"
 #include "progress.h"
 #include "reference.h"
 #include "scene_file.h"
@@ -36,25 +37,36 @@ int export_states(const Options& options) {
   if (options.csv.empty() && options.vtk.empty() && options.ply.empty())
     throw std::runtime_error("say what to write: --csv FILE, --vtk DIR or --ply DIR");
   const sim::TrajectoryReader trajectory(options.inputs.front());
-  if (!options.csv.empty()) write_whole_file(options.csv, csv_text(trajectory));
+  ResultFiles files(options.inputs, options.force);
+  // Before the first of them is written.
+  if (!options.csv.empty()) files.require(options.csv);
+  if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_series);
+  for (std::int64_t k = 0; k < trajectory.count(); ++k) {
+    if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_name(k));
+    for (int v = 0; !options.ply.empty() && v < trajectory.layout().vesicles; ++v)
+      files.require_inside(options.ply / ply_name(static_cast<std::size_t>(v), k));
+  }
+  if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory));
   struct Kind {
     const std::filesystem::path& folder;
-    std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const ExportProgress&);
+    std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
   };
   for (const auto& [folder, write] : {Kind{options.vtk, export_vtk}, Kind{options.ply, export_ply}}) {
     if (folder.empty()) continue;
     Progress progress("exporting", options.quiet);
-    const std::int64_t states = write(trajectory, {folder, options.latitudes}, [&](std::int64_t k, std::int64_t count) {
+    const std::int64_t states = write(trajectory, {folder, options.latitudes}, files.writer_inside(), [&](std::int64_t k, std::int64_t count) {
       progress.show(static_cast<double>(k) / static_cast<double>(count), fmt::format("state {} of {}", k + 1, count));
       return !interrupted();
     });
     progress.clear();
     if (states < trajectory.count()) {
+      files.settle();
       tell(fmt::format("interrupted; {} of {} states are in '{}'", states, trajectory.count(), folder.string()));
       return interrupted_status;
     }
     if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", folder.string(), states);
   }
+  files.settle();
   return 0;
 }
 

@@ -6,6 +6,8 @@
 #include "interrupt.h"
 #include "message.h"
 #include "movie_formats.h"
+#include "output.h"
+#include "owned_files.h"
 #include "scene_file.h"
 #include "scene_text.h"
 #include "workers.h"
@@ -49,7 +51,10 @@ int render(const Options& options) {
   if (options.time) {
     fs::path still = options.output.empty() ? here / "still.png" : options.output;
     if (fs::is_directory(still)) still /= "still.png";
-    render_still(sources, *options.time, still, options);
+    ResultFiles files(options.inputs, options.force);
+    files.require(still);
+    render_still(sources, *options.time, still, files, options);
+    files.settle();
     if (!options.quiet) fmt::print("{}\n", still.string());
     return 0;
   }
@@ -58,12 +63,18 @@ int render(const Options& options) {
     tell("interrupted; the same command continues");
     return interrupted_status;
   };
+  {
+    OwnedFiles there(folder);
+    adopt_movie(there, movie_name(find_movie_format(settings.front().movie.format)));
+    require_pictures(there, settings.front());
+  }
   if (options.jobs > 1 && options.shards == 1) {
     check_movie(find_movie_format(settings.front().movie.format), settings.front().view.size[0], settings.front().view.size[1]);
     if (!draw_in_processes(options, folder)) return stopped();
   }
   const FolderLock lock(folder, options.shard, options.shards);
-  const FrameReport report = render_frames(sources, folder, options);
+  OwnedFiles files(folder);
+  const FrameReport report = render_frames(sources, files, options);
   if (report.interrupted) return stopped();
   if (!options.quiet) {
     fmt::print("{}: {} frames drawn, {} kept\n", (folder / "frames").string(), report.drawn, report.kept);
@@ -85,7 +96,7 @@ int figure(const Options& options) {
   }
   const auto folder_of = [](const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); };
   fs::path stem = options.output.empty() ? folder_of(options.inputs.front()) / options.word : options.output;
-  for (const char* extension : {".png", ".svg", ".pdf", ".csv"})
+  for (const char* extension : render::figure_extensions)
     if (stem.extension() == extension) stem.replace_extension();
   std::error_code error;
   fs::create_directories(folder_of(stem), error);
@@ -97,11 +108,17 @@ int figure(const Options& options) {
     if (sets.empty() || !takes_several(options.word)) sets.emplace_back();
     sets.back().push_back({trajectories[k], settings[k], name});
   }
+  ResultFiles files(options.inputs, options.force);
+  std::vector<fs::path> stems;
   for (std::size_t k = 0; k < sets.size(); ++k) {
-    const fs::path file = sets.size() == 1 ? stem : fs::path(fmt::format("{}-{}", stem.string(), k));
-    for (const fs::path& written : draw_figure(sets[k], sets[k].front().settings.figures.front(), file, options))
-      if (!options.quiet) fmt::print("{}\n", written.string());
+    stems.push_back(sets.size() == 1 ? stem : fs::path(fmt::format("{}-{}", stem.string(), k)));
+    for (const char* extension : render::figure_extensions) files.require(stems.back().string() + extension);
   }
+  for (std::size_t k = 0; k < sets.size(); ++k)
+    for (const fs::path& written :
+         draw_figure(sets[k], sets[k].front().settings.figures.front(), stems[k], files.writer(), options))
+      if (!options.quiet) fmt::print("{}\n", written.string());
+  files.settle();
   return 0;
 }
 

@@ -149,6 +149,24 @@ struct Reader {
       fail_at(source_of(*table, "near_rule"), "the repulsion acts where the near rule does: it needs near_rule = true");
   }
 
+  /// Every result has a name of its own.
+  void check_names(const Settings& settings) const {
+    const toml::node* node = root.get("figure");
+    const toml::array* tables = node ? node->as_array() : nullptr;
+    std::vector<std::string> taken;
+    for (std::size_t k = 0; k < settings.figures.size(); ++k) {
+      const render::FigureParameters& figure = settings.figures[k];
+      const toml::table* table = tables ? tables->get(k)->as_table() : node->as_table();
+      const std::string& stem = figure.out.empty() ? figure.kind : figure.out;
+      if (std::find(taken.begin(), taken.end(), stem) != taken.end())
+        fail_at(source_of(*table, figure.out.empty() ? "kind" : "out"),
+                fmt::format("two figures would be called '{}'; give one of them another 'out'", stem));
+      if (settings.movie.poster && stem == "poster")
+        fail_at(source_of(*table, "out"), "the poster of the movie is called 'poster' already; give the figure another 'out'");
+      taken.push_back(stem);
+    }
+  }
+
   template <class P>
   void read_table(const sim::Section& section, const toml::table& table, P& parameters) const {
     std::vector<std::string_view> known;
@@ -248,7 +266,10 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
                settings.scene.title);
   const Reader reader{root, name, folder, use};
   visit_sections(settings, reader);
-  if (use == SceneUse::simulate) reader.check_together(settings.scene);
+  if (use == SceneUse::simulate) {
+    reader.check_together(settings.scene);
+    reader.check_names(settings);
+  }
   if (const double part = settings.movie.time_per_frame, frames = settings.scene.time.end / part; part > 0 && frames > most_frames)
     fail_at(source_of(*root["movie"].as_table(), "time_per_frame"),
             fmt::format("{:.3g} frames are too many; 'time_per_frame' must be longer", frames));

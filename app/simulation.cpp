@@ -16,7 +16,7 @@ namespace app {
 namespace {
 
 SimulationReport simulate(const Settings& settings, const std::filesystem::path& path, bool resume, std::int64_t first_step,
-                          const Options& options) {
+                          const Options& options, const std::function<void()>& ready) {
   const sim::Scene& scene = settings.scene;
   sim::SimulationOptions how;
   how.trajectory = path;
@@ -37,6 +37,7 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
     progress.clear();
     if (!options.quiet) tell(fmt::format("warning: {}", warning));
   };
+  observer.on_ready = ready;
   observer.should_stop = [] { return interrupted(); };
   const sim::SimulationOutcome outcome = sim::simulate(scene, how, observer);
 
@@ -51,17 +52,19 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
 
 }  // namespace
 
-SimulationReport simulate_new(const Settings& settings, const std::filesystem::path& path, const Options& options) {
+SimulationReport simulate_new(const Settings& settings, const std::filesystem::path& path, const Options& options,
+                              const std::function<void()>& ready) {
   if (path.has_parent_path()) {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
     if (error)
       throw std::runtime_error(fmt::format("cannot make folder '{}': {}", path.parent_path().string(), error.message()));
   }
-  return simulate(settings, path, false, 0, options);
+  return simulate(settings, path, false, 0, options, ready);
 }
 
-SimulationReport simulate_further(const Settings& settings, const std::filesystem::path& path, const Options& options) {
+SimulationReport simulate_further(const Settings& settings, const std::filesystem::path& path, const Options& options,
+                                  const std::function<void()>& ready) {
   const sim::TrajectoryReader reader(path);
   const Settings there =
       parse_scene(reader.header().scene, path.string() + " (its scene)", path.parent_path(), {}, SceneUse::draw);
@@ -72,7 +75,7 @@ SimulationReport simulate_further(const Settings& settings, const std::filesyste
   const std::int64_t steps = sim::deserialised(reader.resume_payload()).step;
   if (states > 0 && (last >= settings.scene.time.end || (options.steps && steps >= *options.steps)))
     return {states, last, true, false, {}};
-  return simulate(settings, path, true, steps, options);
+  return simulate(settings, path, true, steps, options, ready);
 }
 
 }  // namespace app
