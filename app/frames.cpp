@@ -116,6 +116,7 @@ fs::path write_poster(OwnedFiles& files, const std::vector<double>& times, doubl
   const std::string frame = read_whole_file(files.folder() / frame_name(static_cast<std::size_t>(nearest - times.begin())));
   const fs::path poster = files.folder() / poster_name;
   if (!fs::exists(poster) || read_whole_file(poster) != frame) files.write(poster_name, frame);
+  else if (!files.listed(poster_name)) files.adopt(poster_name);
   return poster;
 }
 

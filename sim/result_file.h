@@ -12,7 +12,8 @@
 
 namespace sim {
 
-/// Where a name leads when every link is followed, the last one included, whether or not anything is there.
+/// Where a name leads when every link is followed, the last one included, whether or not anything is there. A pipe or a device
+/// keeps its name.
 std::filesystem::path destination(const std::filesystem::path&);
 
 /// The right to write an open file, held by this process until it closes the file or dies, however it dies. It belongs to the

@@ -70,7 +70,7 @@ TEST_CASE("what a run made is replaced by the next one, and what was changed sin
     support::write_file(desk / "out" / name, changed);
     for (const bool force : {false, true}) {
       std::vector<std::string> other = run;
-      other.insert(other.end(), {"--set", "flow.rate=2"});
+      other.insert(other.end(), {"--set", force ? "flow.rate=2" : "view.style=outline"});
       if (force) other.push_back("--force");
       const Outcome o = desk(other);
       INFO(name << o.err);
@@ -116,8 +116,8 @@ TEST_CASE("a scene that cannot start takes nothing away, also with --force", "[f
   support::write_file(desk / "overlap.toml", scene("0.5", "") + overlapping);
   REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"}).status == 0);
   const auto before = desk.names();
-  for (const std::string line : {"$T run overlap.toml -o out --force", "$T run overlap.toml -o fresh", "ulimit -f 8; $T run s.toml -o out --force",
-                                 "ulimit -f 8; $T run s.toml -o fresh"}) {
+  for (const std::string line : {"$T run overlap.toml -o out --force -q", "$T run overlap.toml -o fresh -q",
+                                 "ulimit -f 8; $T run s.toml -o out --force -q", "ulimit -f 8; $T run s.toml -o fresh -q"}) {
     const Outcome o = desk.shell(line);
     INFO(line << ": " << o.err);
     CHECK(o.status == 1);
@@ -137,7 +137,7 @@ TEST_CASE("a scene that cannot start takes nothing away, also with --force", "[f
 TEST_CASE("a scene that somebody wrote is never overwritten by the resolved one of another", "[files]") {
   const Desk desk;
   const std::string text = resolved_scene(desk);
-  for (const std::string mine : {"# by hand\n" + scene("0.5"), text, std::string("not a scene")})
+  for (const std::string& mine : {"# by hand\n" + scene("0.5"), text, std::string("not a scene")})
     for (const bool force : {false, true}) {
       fs::remove_all(desk / "out");
       fs::create_directory(desk / "out");
@@ -217,7 +217,7 @@ TEST_CASE("an output that is an input, a trajectory or somebody else's file is r
   for (const std::string line :
        {"export t.h5 --csv t.h5", "export t.h5 --csv u.h5", "export t.h5 --csv link.h5", "export link.h5 --csv twin.csv --force", "export t.h5 --csv s.toml",
         "render t.h5 --time 0 -o t.h5", "render t.h5 --time 0 -o u.h5 --force", "render t.h5 --time 0 -o s.toml", "figure time-series u.h5 t.h5 -o series.png",
-        "figure time-series u.h5 t.h5 -o series --force", "simulate s.toml -o s.toml --force", "simulate s.toml -o s.toml --resume"}) {
+        "figure time-series u.h5 t.h5 -o series --force", "simulate s.toml -o s.toml --force -q", "simulate s.toml -o s.toml --resume"}) {
     const Outcome o = desk.shell("$T " + line);
     INFO(line << ": " << o.err);
     CHECK(o.status == 1);
@@ -258,7 +258,7 @@ TEST_CASE("two results of one name are refused in the scene", "[files]") {
   check_refused(same.shell("$T run s.toml -o out"), "two figures would be called 'time-series'");
   const Desk named(scene("0.2", one + again));
   const Outcome o = named.shell("$T run s.toml -o out");
-  check_refused(o, "s.toml:16:");
+  check_refused(o, "s.toml:18:7: two figures");
   CHECK(named.names().empty());
   const Desk poster(scene("0.2", "[movie]\nposter = 0\n[[figure]]\nkind = \"overlay\"\nout = \"poster\"\n"));
   check_refused(poster.shell("$T run s.toml -o out"), "the poster of the movie is called 'poster' already");
