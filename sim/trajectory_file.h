@@ -5,6 +5,7 @@
 #include "trajectory_rows.h"
 
 #include <map>
+#include <optional>
 
 namespace sim::file {
 
@@ -26,13 +27,11 @@ inline constexpr std::uint64_t note_bytes = 256, note_rows = 64;
 
 /// Writes an empty file of that layout: header, all datasets allocated (sparse) and zero. Not synced, not renamed.
 void create(const std::filesystem::path&, const TrajectoryLayout&, const TrajectoryHeader&);
-/// Opens read-only, without locking, checks format, names, types and extents, and closes again.
-Map map(const std::filesystem::path&);
 
-/// An open file descriptor whose transfers are complete or an exception with a sentence.
+/// An open file descriptor whose transfers are complete or an exception with a sentence. Only regular files are opened:
+/// a named pipe may keep its reader for ever, and opening a device may do something.
 class Descriptor {
  public:
-  Descriptor() = default;
   Descriptor(const std::filesystem::path&, bool writable);
   Descriptor(Descriptor&&) noexcept;
   Descriptor& operator=(Descriptor&&) noexcept;
@@ -42,11 +41,19 @@ class Descriptor {
   void read(std::uint64_t offset, void* bytes, std::uint64_t size) const;
   void sync(bool data_only) const;
   std::uint64_t inode() const;
+  std::uint64_t size() const;
+  /// Is this descriptor of the same file?
+  bool same_file(int descriptor) const;
+  const std::filesystem::path& path() const { return path_; }
 
  private:
   std::filesystem::path path_;
   int fd_ = -1;
 };
+
+/// Has HDF5 open the file of the descriptor read-only, without locking, checks format, names, types and extents, and closes
+/// it again. Nothing when another file has taken the name since.
+std::optional<Map> map(const Descriptor&);
 
 /// The right to write PATH: a lock on PATH.lock, given back by the kernel even after kill -9.
 class Lock {
