@@ -6,8 +6,8 @@
 #include "interrupt.h"
 #include "message.h"
 #include "movie_formats.h"
-#include "scene_file.h"
 #include "scene_text.h"
+#include "trajectory_scene.h"
 #include "workers.h"
 
 #include <fmt/format.h>
@@ -21,11 +21,8 @@ namespace {
 /// The scene of a trajectory with changes to its pictures; changes to its physics are refused.
 Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path, const std::vector<std::string>& changes) {
   if (trajectory.count() == 0) throw std::runtime_error(fmt::format("trajectory '{}' has no state", path.string()));
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const std::string name = path.string() + " (its scene)";
-  const std::string& text = trajectory.header().scene;
-  const Settings simulated = parse_scene(text, name, folder, {}, SceneUse::draw);
-  Settings changed = parse_scene(text, name, folder, changes, SceneUse::draw);
+  const Settings simulated = scene_in(trajectory, path);
+  Settings changed = scene_in(trajectory, path, changes);
   if (physics_hash(changed.scene) != physics_hash(simulated.scene))
     throw std::runtime_error(fmt::format("'{}' has been simulated already: --set can change its view, movie and figures "
                                          "only", path.string()));

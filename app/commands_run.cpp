@@ -69,17 +69,15 @@ int run(const Options& options) {
   const Settings settings = requested_scene(options);
   const fs::path folder = options.output.empty() ? fs::path("out") / options.inputs.front().stem() : options.output;
   protect_scene(options.inputs.front(), folder);
-  if (options.dry_run) {
-    inspect_folder(folder, settings, options.force);
-    return print_plan(settings);
-  }
+  const fs::path trajectory = folder / "trajectory.h5";
+  if (inspect_folder(folder, settings, options.force) != FolderState::fresh && fs::exists(trajectory))
+    check_further(settings, trajectory);
+  if (options.dry_run) return print_plan(settings);
   // Before hours of simulation: can there be pictures at all?
   render::GlContext(render::parse_gl_choice(options.gl));
   check_movie(find_movie_format(settings.movie.format), settings.view.size[0], settings.view.size[1]);
-  inspect_folder(folder, settings, options.force);
   FolderLock lock(folder);
   const FolderState state = claim_folder(folder, settings, options.force);
-  const fs::path trajectory = folder / "trajectory.h5";
   SimulationReport report;
   try {
     report = state != FolderState::fresh && fs::exists(trajectory) ? simulate_further(settings, trajectory, options)

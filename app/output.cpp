@@ -75,12 +75,13 @@ FolderState inspect_folder(const fs::path& folder, const Settings& settings, boo
                                          "to replace it", folder.string(), error.what()));
   }
   if (force) return FolderState::fresh;
-  if (physics_hash(there.scene) == physics_hash(settings.scene)) {
+  const auto differences = physics_differences(there.scene, settings.scene);
+  if (continuable(differences)) {
     there.scene.numerics.threads = settings.scene.numerics.threads;
     return write_scene(there) == write_scene(settings) ? FolderState::same : FolderState::same_physics;
   }
-  throw std::runtime_error(fmt::format("folder '{}' belongs to another scene, '{}'; give another -o, or --force to replace "
-                                       "it", folder.string(), there.scene.title));
+  throw std::runtime_error(fmt::format("folder '{}' belongs to another scene: {}; give another -o, or --force to replace it",
+                                       folder.string(), text_of(differences)));
 }
 
 void release_folder(const fs::path& folder) {

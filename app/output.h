@@ -22,7 +22,7 @@ void remove_frames(const std::filesystem::path& folder, std::int64_t first);
 enum class FolderState {
   fresh,      ///< new, or without a scene of ours
   same,       ///< this very scene, pictures included
-  same_physics  ///< this simulation with other pictures
+  same_physics  ///< this simulation with other pictures, or to another end
 };
 
 /// Makes the folder and leaves the resolved scene.toml in it. A folder with another scene's simulation is refused

@@ -16,7 +16,10 @@ struct SimulationReport {
 
 /// A new file; one that exists is replaced.
 SimulationReport simulate_new(const Settings&, const std::filesystem::path& trajectory, const Options&);
-/// Continues a file. A file of another scene is refused.
+/// May the file be continued with these settings: is it of this scene, but for time.end and time.save_every, and not beyond
+/// its end? Throws std::runtime_error that names the keys that differ.
+void check_further(const Settings&, const std::filesystem::path& trajectory);
+/// Continues a file, also to a later end or with other times to save from now on. Others are refused.
 SimulationReport simulate_further(const Settings&, const std::filesystem::path& trajectory, const Options&);
 
 }  // namespace app
