@@ -6,6 +6,7 @@
 #include "interrupt.h"
 #include "message.h"
 #include "movie_formats.h"
+#include "printable.h"
 #include "scene_text.h"
 #include "trajectory_scene.h"
 #include "workers.h"
@@ -47,7 +48,7 @@ int render(const Options& options) {
     fs::path still = options.output.empty() ? here / "still.png" : options.output;
     if (fs::is_directory(still)) still /= "still.png";
     render_still(sources, *options.time, still, options);
-    if (!options.quiet) fmt::print("{}\n", still.string());
+    if (!options.quiet) fmt::print("{}\n", printable(still.string()));
     return 0;
   }
   const fs::path folder = options.output.empty() ? here : options.output;
@@ -63,9 +64,9 @@ int render(const Options& options) {
   const FrameReport report = render_frames(sources, folder, options);
   if (report.interrupted) return stopped();
   if (!options.quiet) {
-    fmt::print("{}: {} frames drawn, {} kept\n", (folder / "frames").string(), report.drawn, report.kept);
+    fmt::print("{}: {} frames drawn, {} kept\n", printable((folder / "frames").string()), report.drawn, report.kept);
     for (const fs::path& file : {report.movie, report.poster})
-      if (!file.empty()) fmt::print("{}\n", file.string());
+      if (!file.empty()) fmt::print("{}\n", printable(file.string()));
   }
   if (!report.remark.empty()) tell(report.remark);
   return report.movie_failed ? 1 : 0;
@@ -90,14 +91,14 @@ int figure(const Options& options) {
   // Curves of several trajectories share a figure; pictures of states get one each.
   std::vector<std::vector<FigureSource>> sets;
   for (std::size_t k = 0; k < trajectories.size(); ++k) {
-    const std::string name = trajectories.size() > 1 ? settings[k].scene.title : std::string();
+    const std::string name = trajectories.size() > 1 ? printable(settings[k].scene.title) : std::string();
     if (sets.empty() || !takes_several(options.word)) sets.emplace_back();
     sets.back().push_back({trajectories[k], settings[k], name});
   }
   for (std::size_t k = 0; k < sets.size(); ++k) {
     const fs::path file = sets.size() == 1 ? stem : fs::path(fmt::format("{}-{}", stem.string(), k));
     for (const fs::path& written : draw_figure(sets[k], sets[k].front().settings.figures.front(), file, options))
-      if (!options.quiet) fmt::print("{}\n", written.string());
+      if (!options.quiet) fmt::print("{}\n", printable(written.string()));
   }
   return 0;
 }

@@ -7,6 +7,7 @@
 #include "message.h"
 #include "movie_formats.h"
 #include "output.h"
+#include "printable.h"
 #include "scene_file.h"
 #include "scene_text.h"
 #include "simulation.h"
@@ -30,7 +31,7 @@ Settings requested_scene(const Options& options) {
 }
 
 void say(const Options& options, const std::string& line) {
-  if (!options.quiet) fmt::print("{}\n", line);
+  if (!options.quiet) fmt::print("{}\n", printable(line));
 }
 
 /// Tells how a simulation ended; the exit status.

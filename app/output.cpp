@@ -5,13 +5,12 @@
 #include "scene_text.h"
 
 #include "render/file.h"
+#include "sim/input_file.h"
 
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <system_error>
 
 namespace app {
@@ -28,8 +27,9 @@ void write_whole_file(const fs::path& path, const std::string& text) {
 }
 
 std::string read_whole_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
+  std::string why;
+  std::ifstream in = sim::open_input(path, why);
+  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), why));
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -41,6 +41,11 @@ struct OpenFile {
     for (const rows::Column& c : rows::step_columns(map.layout)) step_places.push_back(map.at(c.name));
   }
 
+  void renamed(const std::filesystem::path& now) {
+    path = now;
+    descriptor.renamed(now);
+  }
+
   std::uint64_t word(std::string_view dataset, std::uint64_t row = 0) const {
     std::uint64_t value = 0;
     descriptor.read(map.at(dataset).offset + 8 * row, &value, 8);
@@ -210,7 +215,7 @@ struct TrajectoryWriter::Impl {
     for (const char* counter : {"count", "steps/count", "notes_count"}) copy(counter, 1);
     if (const OpenFile::Slot slot = file.newest_slot(); slot.sequence > 0) larger.write_slot(slot);
     file::publish(path);
-    larger.path = path;
+    larger.renamed(path);
     file = std::move(larger);
   }
 
@@ -282,7 +287,7 @@ TrajectoryWriter TrajectoryWriter::create(const std::filesystem::path& path, con
     impl->append(first);
     impl->write_resume(resume_payload);
     file::publish(path);
-    impl->file.path = path;
+    impl->file.renamed(path);
     return TrajectoryWriter(std::move(impl));
   } catch (...) {
     std::error_code ignored;

@@ -557,9 +557,11 @@ void publish(const std::filesystem::path& path) {
   if (::rename(temporary(path).c_str(), path.c_str()) != 0) fail("write trajectory", path, errno);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return;
-  ::fsync(fd);
+  if (fd < 0) return;  // a folder that may not be read cannot be synced
+  const bool synced = ::fsync(fd) == 0 || errno == EINVAL || errno == EROFS;
+  const int reason = errno;
   ::close(fd);
+  if (!synced) fail("write trajectory", path, reason);
 }
 
 }  // namespace sim::file

@@ -45,6 +45,7 @@ class Descriptor {
   /// Is this descriptor of the same file?
   bool same_file(int descriptor) const;
   const std::filesystem::path& path() const { return path_; }
+  void renamed(const std::filesystem::path& path) { path_ = path; }  ///< the file, by somebody
 
  private:
   std::filesystem::path path_;
