@@ -152,6 +152,16 @@ std::vector<SceneDifference> physics_differences(const sim::Scene& first, const 
     if (const std::string other = value(here, key); other != text) all.push_back({key, text, other});
   for (const auto& [key, text] : b.lines)
     if (text != "none" && !there.contains(key)) all.push_back({key, "none", text});
+  // A list of one needs no number.
+  for (SceneDifference& d : all)
+    if (const std::size_t at = d.key.find(".0."); at != std::string::npos) {
+      const std::string second = d.key.substr(0, at) + ".1.";
+      const auto several = [&](const auto& values) {
+        const auto entry = values.lower_bound(second);
+        return entry != values.end() && entry->first.starts_with(second);
+      };
+      if (!several(there) && !several(here)) d.key.erase(at, 2);
+    }
   return all;
 }
 

@@ -72,6 +72,8 @@ void start_hdf5() {
   H5PLset_loading_state(0);
 }
 
+const std::string content = "tanktread trajectory";  // what the file says that it is
+
 enum class Kind { real, integer, text };
 
 struct Dataset {
@@ -240,7 +242,7 @@ void create_with_hdf5(const std::filesystem::path& path, const std::vector<Datas
     const hid_t h5 = made(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
 
     write_number(h5, "format", trajectory_format);
-    write_text(h5, "content", "tanktread trajectory");
+    write_text(h5, "content", content);
     write_text(h5, "program", header.program);
     write_text(h5, "build", header.build);
     std::string warnings;
@@ -445,7 +447,7 @@ std::optional<Map> map(const Descriptor& file) {
     void* descriptor = nullptr;
     if (H5Fget_vfd_handle(h5, H5P_DEFAULT, &descriptor) < 0 || !descriptor) throw Refused("the file");
     if (!file.same_file(*static_cast<int*>(descriptor))) return std::nullopt;
-    if (H5Aexists(h5, "content") <= 0 || H5Aexists(h5, "format") <= 0)
+    if (H5Aexists(h5, "content") <= 0 || H5Aexists(h5, "format") <= 0 || read_text(h5, "content", size) != content)
       throw std::runtime_error(fmt::format("'{}' is an HDF5 file but not a Tanktread trajectory", path));
     if (const std::int64_t format = read_number(h5, "format"); format != trajectory_format)
       throw std::runtime_error(fmt::format("trajectory '{}' has format {}; this program reads format {}", path, format,
