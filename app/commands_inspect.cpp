@@ -7,14 +7,15 @@
 #include "mesh_export.h"
 #include "output.h"
 #include "owned_files.h"
+#include "printable.h"
 #include "progress.h"
 #include "reference.h"
 #include "scene_file.h"
 #include "summary.h"
 
-#include <fmt/format.h>
+#include "sim/input_file.h"
 
-#include <fstream>
+#include <fmt/format.h>
 
 namespace app {
 
@@ -22,13 +23,16 @@ int info(const Options& options) {
   const std::filesystem::path& path = options.inputs.front();
   if (std::filesystem::is_directory(path))
     throw std::runtime_error(fmt::format("'{}' is a folder; give a trajectory, a scene or a frame in it", path.string()));
-  if (!std::filesystem::is_regular_file(path))
-    throw std::runtime_error(fmt::format("there is no file '{}'", path.string()));
-  char start[8] = {};
-  std::ifstream(path, std::ios::binary).read(start, sizeof start);
-  const std::string_view signature(start, sizeof start);
-  if (signature == "\211HDF\r\n\032\n") fmt::print("{}", trajectory_summary(path));
-  else if (signature == "\211PNG\r\n\032\n") fmt::print("{}", picture_summary(path));
+  if (!std::filesystem::exists(path)) throw std::runtime_error(fmt::format("there is no file '{}'", path.string()));
+  std::string why;
+  std::ifstream in = sim::open_input(path, why);
+  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), why));
+  std::string start(8, '\0');
+  start.resize(static_cast<std::size_t>(in.read(start.data(), 8).gcount()));
+  // A beginning alone is told to be one.
+  const auto begins = [&start](std::string_view signature) { return start.size() > 1 && signature.starts_with(start); };
+  if (begins("\211HDF\r\n\032\n")) fmt::print("{}", trajectory_summary(path));
+  else if (begins("\211PNG\r\n\032\n")) fmt::print("{}", picture_summary(path));
   else fmt::print("{}", scene_summary(read_scene(path, options.set)));
   return 0;
 }
@@ -64,7 +68,7 @@ int export_states(const Options& options) {
       tell(fmt::format("interrupted; {} of {} states are in '{}'", states, trajectory.count(), folder.string()));
       return interrupted_status;
     }
-    if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", folder.string(), states);
+    if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", printable(folder.string()), states);
   }
   files.settle();
   return 0;

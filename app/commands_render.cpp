@@ -8,8 +8,9 @@
 #include "movie_formats.h"
 #include "output.h"
 #include "owned_files.h"
-#include "scene_file.h"
+#include "printable.h"
 #include "scene_text.h"
+#include "trajectory_scene.h"
 #include "workers.h"
 
 #include <fmt/format.h>
@@ -23,11 +24,8 @@ namespace {
 /// The scene of a trajectory with changes to its pictures; changes to its physics are refused.
 Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path, const std::vector<std::string>& changes) {
   if (trajectory.count() == 0) throw std::runtime_error(fmt::format("trajectory '{}' has no state", path.string()));
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const std::string name = path.string() + " (its scene)";
-  const std::string& text = trajectory.header().scene;
-  const Settings simulated = parse_scene(text, name, folder, {}, SceneUse::draw);
-  Settings changed = parse_scene(text, name, folder, changes, SceneUse::draw);
+  const Settings simulated = scene_in(trajectory, path);
+  Settings changed = scene_in(trajectory, path, changes);
   if (physics_hash(changed.scene) != physics_hash(simulated.scene))
     throw std::runtime_error(fmt::format("'{}' has been simulated already: --set can change its view, movie and figures "
                                          "only", path.string()));
@@ -55,7 +53,7 @@ int render(const Options& options) {
     files.require(still);
     render_still(sources, *options.time, still, files, options);
     files.settle();
-    if (!options.quiet) fmt::print("{}\n", still.string());
+    if (!options.quiet) fmt::print("{}\n", printable(still.string()));
     return 0;
   }
   const fs::path folder = options.output.empty() ? here : options.output;
@@ -77,9 +75,9 @@ int render(const Options& options) {
   const FrameReport report = render_frames(sources, files, options);
   if (report.interrupted) return stopped();
   if (!options.quiet) {
-    fmt::print("{}: {} frames drawn, {} kept\n", (folder / "frames").string(), report.drawn, report.kept);
+    fmt::print("{}: {} frames drawn, {} kept\n", printable((folder / "frames").string()), report.drawn, report.kept);
     for (const fs::path& file : {report.movie, report.poster})
-      if (!file.empty()) fmt::print("{}\n", file.string());
+      if (!file.empty()) fmt::print("{}\n", printable(file.string()));
   }
   if (!report.remark.empty()) tell(report.remark);
   return report.movie_failed ? 1 : 0;
@@ -104,7 +102,7 @@ int figure(const Options& options) {
   // Curves of several trajectories share a figure; pictures of states get one each.
   std::vector<std::vector<FigureSource>> sets;
   for (std::size_t k = 0; k < trajectories.size(); ++k) {
-    const std::string name = trajectories.size() > 1 ? settings[k].scene.title : std::string();
+    const std::string name = trajectories.size() > 1 ? printable(settings[k].scene.title) : std::string();
     if (sets.empty() || !takes_several(options.word)) sets.emplace_back();
     sets.back().push_back({trajectories[k], settings[k], name});
   }
@@ -117,7 +115,7 @@ int figure(const Options& options) {
   for (std::size_t k = 0; k < sets.size(); ++k)
     for (const fs::path& written :
          draw_figure(sets[k], sets[k].front().settings.figures.front(), stems[k], files.writer(), options))
-      if (!options.quiet) fmt::print("{}\n", written.string());
+      if (!options.quiet) fmt::print("{}\n", printable(written.string()));
   files.settle();
   return 0;
 }

@@ -7,6 +7,7 @@
 #include "message.h"
 #include "movie_formats.h"
 #include "output.h"
+#include "printable.h"
 #include "scene_file.h"
 #include "scene_text.h"
 #include "simulation.h"
@@ -30,7 +31,7 @@ Settings requested_scene(const Options& options) {
 }
 
 void say(const Options& options, const std::string& line) {
-  if (!options.quiet) fmt::print("{}\n", line);
+  if (!options.quiet) fmt::print("{}\n", printable(line));
 }
 
 /// Tells how a simulation ended; the exit status.
@@ -71,10 +72,12 @@ int print_plan(const Settings& settings) {
 int run(const Options& options) {
   const Settings settings = requested_scene(options);
   const fs::path folder = options.output.empty() ? fs::path("out") / options.inputs.front().stem() : options.output;
+  const fs::path trajectory = folder / "trajectory.h5";
   {
     OwnedFiles there(folder);
     protect_scene(options.inputs.front(), there, settings);
-    inspect_folder(there, settings, options.force);
+    if (inspect_folder(there, settings, options.force) != FolderState::fresh && fs::exists(trajectory))
+      check_further(settings, trajectory);
   }
   if (options.dry_run) return print_plan(settings);
   // Before hours of simulation: can there be pictures at all?
@@ -83,7 +86,6 @@ int run(const Options& options) {
   const FolderLock lock(folder);
   OwnedFiles files(folder);
   const FolderState state = inspect_folder(files, settings, options.force);
-  const fs::path trajectory = folder / "trajectory.h5";
   bool claimed = false;
   const auto claim = [&] {  // once it is known that the scene can be simulated
     if (!claimed) claim_folder(files, settings, state);

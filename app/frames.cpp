@@ -3,6 +3,7 @@
 #include "interrupt.h"
 #include "movie.h"
 #include "output.h"
+#include "printable.h"
 #include "progress.h"
 #include "version.h"
 
@@ -62,7 +63,7 @@ const PictureSource& longest(const std::vector<PictureSource>& sources) {
 }
 
 render::PngText picture_text(const PictureSource& source, const Studio& studio, double time, const std::string& hash) {
-  render::PngText text{{"Title", source.settings.scene.title},
+  render::PngText text{{"Title", printable(source.settings.scene.title)},
                        {"Software", "tanktread " + version()},
                        {"tanktread:time", fmt::format("{:.12g}", time)},
                        {hash_key, hash}};

@@ -5,14 +5,13 @@
 #include "scene_text.h"
 
 #include "render/figure.h"
+#include "sim/input_file.h"
 #include "sim/trajectory.h"
 
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <optional>
 #include <system_error>
 
@@ -30,8 +29,9 @@ void write_whole_file(const fs::path& path, const std::string& text) {
 }
 
 std::string read_whole_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
+  std::string why;
+  std::ifstream in = sim::open_input(path, why);
+  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), why));
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -66,7 +66,7 @@ void adopt_earlier(OwnedFiles& files, const Settings& there, const std::string& 
   try {
     const sim::TrajectoryReader trajectory(files.folder() / trajectory_name);
     const Settings simulated = parse_scene(trajectory.header().scene, "its scene", files.folder(), {}, SceneUse::draw);
-    if (physics_hash(simulated.scene) != physics_hash(there.scene)) return;
+    if (!continuable(physics_differences(simulated.scene, there.scene))) return;
   } catch (const std::exception&) {
     return;
   }
@@ -129,7 +129,8 @@ FolderState inspect_folder(OwnedFiles& files, const Settings& settings, bool for
     } catch (const std::exception& error) {
       complaint = error.what();
     }
-    const bool same_simulation = there && physics_hash(there->scene) == physics_hash(settings.scene);
+    const auto differences = there ? physics_differences(there->scene, settings.scene) : std::vector<SceneDifference>();
+    const bool same_simulation = there && continuable(differences);
     if (same_simulation && !force)
       state = write_scene(*there) == write_scene(settings) ? FolderState::same : FolderState::same_physics;
     // A scene that says what the resolved one would say stays, whoever wrote it.
@@ -138,8 +139,8 @@ FolderState inspect_folder(OwnedFiles& files, const Settings& settings, bool for
       throw std::runtime_error(fmt::format("folder '{}' holds a scene that cannot be read ({}); give another -o, or --force "
                                            "to replace it", folder.string(), complaint));
     if (!same_simulation && !force)
-      throw std::runtime_error(fmt::format("folder '{}' belongs to another scene, '{}'; give another -o, or --force to replace "
-                                           "it", folder.string(), there->scene.title));
+      throw std::runtime_error(fmt::format("folder '{}' belongs to another scene: {}; give another -o, or --force to replace it",
+                                           folder.string(), text_of(differences)));
   }
   adopt_movie(files, movie_name(find_movie_format(settings.movie.format)));
   require_pictures(files, settings);

@@ -26,7 +26,7 @@ std::vector<std::string> figure_names(const render::FigureParameters&);
 enum class FolderState {
   fresh,      ///< new, or given up by --force
   same,       ///< this very scene, pictures included
-  same_physics  ///< this simulation with other pictures
+  same_physics  ///< this simulation with other pictures, or to another end
 };
 
 /// What a movie was made of, in a hidden file beside its frames: the frames alone do not tell how fast they were shown.

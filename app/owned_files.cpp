@@ -355,9 +355,7 @@ std::string frame_name(std::size_t number) { return fmt::format("frames/{:06}.pn
 
 OwnedFiles& ResultFiles::owned(const fs::path& target) {
   const fs::path folder = target.parent_path();
-  auto [entry, fresh] = folders_.try_emplace(folder, folder);
-  if (fresh) sim::remove_dead_drafts(folder);
-  return entry->second;
+  return folders_.try_emplace(folder, folder).first->second;
 }
 
 void ResultFiles::require(const fs::path& path) {

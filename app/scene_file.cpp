@@ -1,17 +1,18 @@
 #include "scene_file.h"
 
 #include "catalogues.h"
+#include "printable.h"
 #include "scene_overrides.h"
 #include "scene_values.h"
 
 #include "render/palette.h"
+#include "sim/input_file.h"
 #include "sim/placements.h"
 #include "sim/shapes.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
 namespace app {
 
@@ -48,9 +49,25 @@ const toml::source_region& source_of(const toml::table& table, std::string_view 
 }
 
 std::string text_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
+  std::string why;
+  std::ifstream in = sim::open_input(path, why);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read: {}", path.string(), why));
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What is no text at all is called by its name.
+void refuse_other_files(std::string_view text, const std::filesystem::path& path) {
+  struct Kind {
+    std::string_view start, what;
+  };
+  constexpr Kind kinds[] = {{"\211HDF\r\n\032\n", "a trajectory or another HDF5 file, not a scene; 'tanktread info' tells what is in it"},
+                            {"\211PNG\r\n\032\n", "a picture, not a scene"},
+                            {"\377\330\377", "a picture, not a scene"}};
+  if (text.empty()) throw std::runtime_error(fmt::format("{}: is empty", path.string()));
+  for (const Kind& kind : kinds)
+    if (text.starts_with(kind.start)) throw std::runtime_error(fmt::format("{}: is {}", path.string(), kind.what));
+  if (text.find('\0') != std::string_view::npos)
+    throw std::runtime_error(fmt::format("{}: is not a text, hence no scene", path.string()));
 }
 
 /// Is an optional, text or list member of a kind that needs it not given?
@@ -95,6 +112,8 @@ struct Reader {
     if (p.out.find('/') != std::string::npos || p.out == "." || p.out == "..")
       fail_at(source_of(table, "out"), fmt::format("'out' must be a file name without folders, not '{}'; results stay in the "
                                                    "output folder ('tanktread figure -o' writes anywhere)", p.out));
+    if (printable(p.out) != p.out)
+      fail_at(source_of(table, "out"), fmt::format("'out' must be a file name without control characters, not '{}'", p.out));
   }
   void check(const toml::table& table, sim::TimeParameters& p) const {
     for (const auto& [key, length] : {std::pair{"step", p.step}, std::pair{"save_every", p.save_every.value_or(p.step)}})
@@ -290,7 +309,9 @@ Settings read_scene(const std::filesystem::path& path, const std::vector<std::st
   constexpr std::uintmax_t largest = 64 << 20;  // some hundred thousand vesicles
   if (std::filesystem::file_size(path, error) > largest && !error)
     throw std::runtime_error(fmt::format("{}: is too large for a scene", path.string()));
-  return parse_scene(text_of(path), path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides);
+  const std::string text = text_of(path);
+  refuse_other_files(text, path);
+  return parse_scene(text, path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides);
 }
 
 }  // namespace app

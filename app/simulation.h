@@ -22,7 +22,11 @@ struct SimulationReport {
 /// replaced.
 SimulationReport simulate_new(const Settings&, const std::filesystem::path& trajectory, const Options&,
                               const std::function<void()>& ready = {});
-/// Continues a file, after `ready`; not when there is nothing left to do. A file of another scene is refused.
+/// May the file be continued with these settings: is it of this scene, but for time.end and time.save_every, and not beyond
+/// its end? Throws std::runtime_error that names the keys that differ.
+void check_further(const Settings&, const std::filesystem::path& trajectory);
+/// Continues a file, also to a later end or with other times to save from now on, after `ready`; not when there is nothing left
+/// to do. Others are refused.
 SimulationReport simulate_further(const Settings&, const std::filesystem::path& trajectory, const Options&,
                                   const std::function<void()>& ready = {});
 

@@ -10,6 +10,8 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -47,12 +49,21 @@ void write_all(int file, std::string_view bytes) {
   }
 }
 
-/// The name of a file is on the disk when its folder is. Some file systems cannot say so.
+/// The name of a file is on the disk when its folder is. Some file systems cannot say so, and some folders may not be read.
 void sync_folder(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;
-  ::fsync(file);
+  const int reason = ::fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
   ::close(file);
+  if (reason != 0) fail(reason);
+}
+
+/// remove_dead_drafts() for the first file that this process writes into a folder.
+void clean_once(const fs::path& folder) {
+  static std::mutex one_at_a_time;
+  static std::set<fs::path> cleaned;
+  const std::lock_guard guard(one_at_a_time);
+  if (cleaned.insert(folder).second) remove_dead_drafts(folder);
 }
 
 bool has_a_name(int file) {
@@ -104,6 +115,7 @@ void remove_dead_drafts(const fs::path& folder) {
 
 Draft::Draft(const fs::path& target) {
   static std::atomic<unsigned> made{0};
+  clean_once(target.parent_path());
   for (;;) {
     path_ = target.parent_path() / fmt::format("{}{}-{}{}", draft_start, ::getpid(), made++, draft_end);
     file_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);

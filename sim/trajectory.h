@@ -22,6 +22,9 @@ namespace sim {
 /// Version of the file layout; readers accept this one only.
 inline constexpr int trajectory_format = 1;
 
+/// Highest order of any field or label in a file.
+inline constexpr int largest_order = 128;
+
 /// Sizes that are fixed for one file. States, steps and resume grow by themselves when they are exceeded.
 struct TrajectoryLayout {
   int vesicles = 1;
@@ -104,6 +107,11 @@ class TrajectoryWriter {
   /// The newest intact payload of write_resume(), as it was given.
   std::vector<double> resume_payload() const;
 
+  /// Does the file hold what a run had written after `step` steps, when it was at `time` and had saved `saves` states?
+  bool holds(std::int64_t step, double time, std::int64_t saves) const;
+  /// Another scene from now on, with room for at least so many rows: the file is written anew and then replaced at once.
+  void continue_as(std::string_view scene, const TrajectoryLayout& room);
+
   /// Appends records, then the state, and returns when both are committed. After a resume the steps between the resume
   /// payload and the end of the file come a second time: states and records not newer than the file's last are left out.
   void append(const State&, std::span<const StepRecord> = {});
@@ -140,6 +148,8 @@ class TrajectoryReader {
   std::vector<StepRecord> steps() const;
   std::vector<std::string> notes() const;
   std::vector<double> resume_payload() const;
+  /// Was the last thing written finish_resume() after so many steps, and is it whole?
+  bool finished_after(std::int64_t step) const;
   /// States whose checksum does not fit.
   std::vector<std::int64_t> damaged() const;
 

@@ -6,6 +6,7 @@
 #include "trajectory_rows.h"
 
 #include <map>
+#include <optional>
 
 namespace sim::file {
 
@@ -28,16 +29,12 @@ inline constexpr std::uint64_t note_bytes = 256, note_rows = 64;
 /// Makes of a draft an empty file of that layout: header, all datasets allocated (sparse) and zero. Errors name `path`, which
 /// the file will have.
 void create(const Draft&, const std::filesystem::path& path, const TrajectoryLayout&, const TrajectoryHeader&);
-/// Opens read-only, without locking, checks format, names, types and extents, and closes again.
-Map map(const std::filesystem::path&);
 
-/// An open file descriptor whose transfers are complete or an exception with a sentence.
+/// An open file descriptor whose transfers are complete or an exception with a sentence. Only regular files are opened:
+/// a named pipe may keep its reader for ever, and opening a device may do something.
 class Descriptor {
  public:
-  Descriptor() = default;
-  /// Errors call it `name`.
-  Descriptor(const std::filesystem::path&, bool writable, const std::filesystem::path& name);
-  Descriptor(const std::filesystem::path& path, bool writable) : Descriptor(path, writable, path) {}
+  Descriptor(const std::filesystem::path&, bool writable);
   Descriptor(Descriptor&&) noexcept;
   Descriptor& operator=(Descriptor&&) noexcept;
   ~Descriptor();
@@ -46,11 +43,20 @@ class Descriptor {
   void read(std::uint64_t offset, void* bytes, std::uint64_t size) const;
   void sync(bool data_only) const;
   std::uint64_t inode() const;
+  std::uint64_t size() const;
+  /// Is this descriptor of the same file?
+  bool same_file(int descriptor) const;
+  const std::filesystem::path& path() const { return path_; }
+  void renamed(const std::filesystem::path& path) { path_ = path; }  ///< the file, by somebody
 
  private:
   std::filesystem::path path_;
   int fd_ = -1;
 };
+
+/// Has HDF5 open the file of the descriptor read-only, without locking, checks format, names, types and extents, and closes
+/// it again. Nothing when another file has taken the name since.
+std::optional<Map> map(const Descriptor&);
 
 /// The right to write a trajectory: a lock on the file itself, whatever name it was opened by.
 class Lock {
