@@ -155,10 +155,10 @@ std::vector<SceneDifference> physics_differences(const sim::Scene& first, const 
   // A list of one needs no number.
   for (SceneDifference& d : all)
     if (const std::size_t at = d.key.find(".0."); at != std::string::npos) {
-      const std::string second = d.key.substr(0, at) + ".1.";
+      const std::string next = d.key.substr(0, at) + ".1.";
       const auto several = [&](const auto& values) {
-        const auto entry = values.lower_bound(second);
-        return entry != values.end() && entry->first.starts_with(second);
+        const auto entry = values.lower_bound(next);
+        return entry != values.end() && entry->first.starts_with(next);
       };
       if (!several(there) && !several(here)) d.key.erase(at, 2);
     }
