@@ -7,6 +7,7 @@
 #include "trajectory_scene.h"
 #include "version.h"
 
+#include "sim/result_file.h"
 #include "sim/simulate.h"
 
 #include <fmt/format.h>
