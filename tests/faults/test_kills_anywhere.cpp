@@ -36,19 +36,12 @@ std::string difference(const Contents& a, const Contents& b) {
 }
 
 /// Processes that were started by one that was killed may still be ending.
-void wait_until_gone(const std::string& word) {
+void wait_until_gone(const fs::path& work) {
   for (int k = 0; k < 6000; ++k) {
     bool found = false;
     for (const auto& entry : fs::directory_iterator("/proc")) {
-      const std::string name = entry.path().filename().string();
-      if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-      std::string line;
-      try {
-        line = support::read_file(entry.path() / "cmdline");
-      } catch (const std::exception&) {
-        continue;  // gone meanwhile
-      }
-      found = found || line.find(word) != std::string::npos;
+      std::error_code gone;
+      found = found || fs::read_symlink(entry.path() / "cwd", gone) == work;
     }
     if (!found) return;
     usleep(10000);
@@ -130,7 +123,7 @@ void kill_everywhere(const Desk& desk, const Tried& tried) {
         status = run_in(desk, tried, variables);
         history += std::string(how) + " operation " + std::to_string(at) + "; ";
       }
-      wait_until_gone(desk.path().string());
+      wait_until_gone(work);
       if (status == 0) {
         ++ends;
         break;
