@@ -18,11 +18,11 @@ using support::message_of;
 
 namespace {
 
-/// Of the changes of files at which a run is stopped; the sanitizers take their time to start it.
+/// Of the changes of files at which a run is stopped; the sanitizers take their time to start it. 1 takes minutes.
 #ifdef __SANITIZE_ADDRESS__
-constexpr long every = 7;
+constexpr long every = 13;
 #else
-constexpr long every = 1;
+constexpr long every = 3;
 #endif
 
 /// One whole trajectory of 11 states for all tests.
