@@ -297,7 +297,7 @@ TEST_CASE("a forged resume record ends --resume with one sentence, and the file 
     INFO("change " << number++ << ": " << outcome.err);
     CHECK(outcome.status == 1);
     CHECK(one_sentence(outcome.err));
-    CHECK_THAT(outcome.err, Contains("its resume record is damaged"));
+    CHECK_THAT(outcome.err, Contains("cannot be resumed: its resume record is damaged"));
     CHECK(support::read_file(desk / "t.h5") == before);
   }
 }
