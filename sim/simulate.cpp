@@ -70,29 +70,37 @@ TrajectoryLayout layout_for(const Scene& scene, const Dynamics& d) {
   return layout;
 }
 
-[[noreturn]] void refuse_resume(const std::filesystem::path& path, std::string_view why) {
-  throw std::runtime_error(fmt::format("trajectory '{}' cannot be resumed: its resume record is damaged ({})", path.string(), why));
-}
+/// Of a TrajectoryReader or TrajectoryWriter.
+template <class File>
+struct ResumeRecord {
+  const File& file;
+  const std::filesystem::path& path;
 
-Dynamics checked_record(std::span<const double> payload, const TrajectoryLayout& layout, const std::filesystem::path& path) {
-  try {
-    return deserialised(payload, layout);
-  } catch (const std::runtime_error& error) {
-    refuse_resume(path, error.what());
+  [[noreturn]] void refuse(std::string_view why) const {
+    throw std::runtime_error(fmt::format("trajectory '{}' of version {} cannot be resumed: its resume record is damaged, or "
+                                         "of another version ({})", path.string(), file.header().program, why));
   }
-}
+  Dynamics read() const {
+    try {
+      return deserialised(file.resume_payload(), file.layout());
+    } catch (const std::runtime_error& error) {
+      refuse(error.what());
+    }
+  }
+};
 
 /// The record against the rest of the file and the scene.
 Dynamics resumed(const TrajectoryWriter& file, const Scene& scene, const std::filesystem::path& path) {
-  Dynamics d = checked_record(file.resume_payload(), file.layout(), path);
+  const ResumeRecord record{file, path};
+  Dynamics d = record.read();
   if (d.vesicles.size() != scene.vesicles.size())
-    refuse_resume(path, fmt::format("{} vesicles, the scene has {}", d.vesicles.size(), scene.vesicles.size()));
+    record.refuse(fmt::format("{} vesicles, the scene has {}", d.vesicles.size(), scene.vesicles.size()));
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
-    if (d.vesicles[k].position.order != scene.vesicles[k].order) refuse_resume(path, "an order is not that of the scene");
-  if (!file.holds(d.step, d.time, d.saves)) refuse_resume(path, "it does not belong to the states of the file");
+    if (d.vesicles[k].position.order != scene.vesicles[k].order) record.refuse("an order is not that of the scene");
+  if (!file.holds(d.step, d.time, d.saves)) record.refuse("it does not belong to the states of the file");
   if (d.dt_limit < std::ldexp(scene.time.step, -scene.numerics.step_retries) * (1 - same_time) ||
       d.dt_limit > scene.time.step * (1 + same_time))
-    refuse_resume(path, "the scene allows no such step");
+    record.refuse("the scene allows no such step");
   return d;
 }
 
@@ -202,7 +210,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
 }
 
 Dynamics resume_point(const TrajectoryReader& file, const std::filesystem::path& path) {
-  return checked_record(file.resume_payload(), file.layout(), path);
+  return ResumeRecord{file, path}.read();
 }
 
 Preview preview(const Scene& scene) {
