@@ -22,11 +22,11 @@ namespace {
 
 constexpr std::string_view owner = "tanktread ";
 
-/// A lock file is empty or says whose it is; anything else with its name is somebody else's.
+/// A lock file says whose it is, as far as a kill let it; anything else with its name is somebody else's.
 void sign(int file, const std::filesystem::path& path) {
   char start[owner.size()];
   const ssize_t got = ::pread(file, start, sizeof start, 0);
-  if (got > 0 && std::string_view(start, static_cast<std::size_t>(got)) != owner)
+  if (got > 0 && !owner.starts_with(std::string_view(start, static_cast<std::size_t>(got))))
     throw std::runtime_error(fmt::format("'{}' was not made by this program, which needs this name for its lock", path.string()));
   const std::string line = fmt::format("{}{}\n", owner, ::getpid());
   if (::ftruncate(file, 0) == 0 && ::pwrite(file, line.data(), line.size(), 0) < 0) return;  // a full disk: locked all the same

@@ -83,6 +83,17 @@ std::string read_all(int file) {
   }
 }
 
+/// The list is empty or begins as ours do, as far as a kill let it; anything else of its name is somebody else's.
+void require_list(int file, const fs::path& path) {
+  struct stat status{};
+  char start[heading.size()];
+  const ssize_t got = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) ? ::pread(file, start, sizeof start, 0) : -1;
+  const std::string_view text(start, got > 0 ? static_cast<std::size_t>(got) : 0);
+  const std::string_view line = text.substr(0, text.find('\n'));
+  if (got == 0 || (!line.empty() && heading.starts_with(line))) return;
+  throw std::runtime_error(fmt::format("'{}' was not made by this program, which needs this name for its list", path.string()));
+}
+
 /// A picture that says it is ours. `damaged`: and cannot be read.
 bool is_marked_picture(const fs::path& path, bool damaged) {
   const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
@@ -109,8 +120,15 @@ std::uint32_t checksum(std::string_view bytes) {
 
 OwnedFiles::OwnedFiles(fs::path folder) : folder_(std::move(folder)) {
   if (folder_.empty()) folder_ = ".";
-  const int file = ::open((folder_ / list_name).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  const fs::path path = folder_ / list_name;
+  const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return;
+  try {
+    require_list(file, path);
+  } catch (...) {
+    ::close(file);
+    throw;
+  }
   list_ = read(file);
   unlisted_ = false;
   ::close(file);
@@ -220,7 +238,15 @@ int OwnedFiles::open_list(bool exclusive) const {
     }
     // It may have been written anew between our open and our lock.
     struct stat ours{}, named{};
-    if (::fstat(file, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino) return file;
+    if (::fstat(file, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino) {
+      try {
+        require_list(file, path);
+      } catch (...) {
+        ::close(file);
+        throw;
+      }
+      return file;
+    }
     ::close(file);
   }
 }

@@ -250,6 +250,10 @@ TEST_CASE("devices, drafts and locks of somebody else stay what they are", "[fil
   support::write_file(desk / "out/.tanktread.lock", "mine");
   check_refused(desk.shell("$T run s.toml -o out"), ".tanktread.lock' was not made by this program");
   CHECK(support::read_file(desk / "out/.tanktread.lock") == "mine");
+  fs::create_directory(desk / "other");
+  support::write_file(desk / "other/.tanktread.files", "mine");
+  check_refused(desk.shell("$T run s.toml -o other"), ".tanktread.files' was not made by this program");
+  CHECK(support::read_file(desk / "other/.tanktread.files") == "mine");
 }
 
 TEST_CASE("two results of one name are refused in the scene", "[files]") {

@@ -145,33 +145,57 @@ void kill_everywhere(const Desk& desk, const Tried& tried) {
                   << " runs that came to their end before");
 }
 
+/// A folder with a scene s.toml and its trajectory t.h5.
+struct Workshop : Desk {
+  Workshop() : Desk(scene("0.4", "[movie]\nposter = 0.2\n[[figure]]\nkind = \"cross-sections\"\npanels = 2\n")) {
+    REQUIRE((*this)({"simulate", file("s.toml"), "-o", file("t.h5"), "-q"}).status == 0);
+  }
+  auto with(const std::string& name) const {
+    return [this, name](const fs::path& work) { copy_into(*this / name, work / name); };
+  }
+};
+
 }  // namespace
 
-TEST_CASE("killed anywhere, every command leaves in the end what it would have left at once", "[faults][kills]") {
-  const Desk desk(scene("0.4", "[movie]\nposter = 0.2\n[[figure]]\nkind = \"cross-sections\"\npanels = 2\n"));
-  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
-  const auto trajectory = [&](const fs::path& work) { copy_into(desk / "t.h5", work / "t.h5"); };
-  const auto pictures = [&](const fs::path& work) {
-    for (const char* folder : {"expected", "actual"}) fs::create_directories(work / folder / "deep");
-    render::Image image(24, 16, 3);
-    for (const std::string name : {"a.png", "b.png", "deep/c.png", "deep/d.png"}) {
-      render::write_png(work / "actual" / name, image);
-      for (auto& value : image.pixels) value = static_cast<std::uint8_t>(value + 60);
-      if (name != "deep/d.png") render::write_png(work / "expected" / name, image);
-    }
-  };
-  const auto scene_only = [&](const fs::path& work) { copy_into(desk / "s.toml", work / "s.toml"); };
-  const auto former = [&](const fs::path& work) {
-    copy_into(desk / "s.toml", work / "s.toml");
-    copy_into(desk / "former", work / "out");
-  };
-  REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("former"), "-q", "--set", "flow.rate=2"}).status == 0);
-  for (const Tried& tried : std::vector<Tried>{
-           {"run", 35, {"run", "s.toml", "-o", "out", "-q"}, scene_only},
-           {"run --force", 15, {"run", "s.toml", "-o", "out", "-q", "--force"}, former},
-           {"render -j 2", 15, {"render", "t.h5", "-o", "out", "-q", "-j", "2"}, trajectory},
-           {"figure", 10, {"figure", "time-series", "t.h5", "-q", "-o", "series"}, trajectory},
-           {"export", 15, {"export", "t.h5", "-q", "--csv", "t.csv", "--vtk", "v", "--ply", "p", "--latitudes", "6"}, trajectory},
-           {"compare --update", 10, {"compare", "expected", "actual", "-q", "--update"}, pictures}})
-    kill_everywhere(desk, tried);
+TEST_CASE("a run, killed anywhere, leaves in the end what it would have left at once", "[faults][kills]") {
+  const Workshop desk;
+  kill_everywhere(desk, {"run", 35, {"run", "s.toml", "-o", "out", "-q"}, desk.with("s.toml")});
+}
+
+TEST_CASE("a run over earlier results, killed anywhere, leaves in the end what it would have left at once", "[faults][kills]") {
+  const Workshop desk;
+  REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "-q", "--set", "flow.rate=2"}).status == 0);
+  kill_everywhere(desk, {"run --force", 15, {"run", "s.toml", "-o", "out", "-q", "--force"}, [&](const fs::path& work) {
+                           copy_into(desk / "s.toml", work / "s.toml");
+                           copy_into(desk / "out", work / "out");
+                         }});
+}
+
+TEST_CASE("a rendering by processes, killed anywhere, leaves in the end what it would have left at once", "[faults][kills]") {
+  const Workshop desk;
+  kill_everywhere(desk, {"render -j 2", 15, {"render", "t.h5", "-o", "out", "-q", "-j", "2"}, desk.with("t.h5")});
+}
+
+TEST_CASE("a figure that was killed anywhere is in the end what it would have been at once", "[faults][kills]") {
+  const Workshop desk;
+  kill_everywhere(desk, {"figure", 10, {"figure", "time-series", "t.h5", "-q", "-o", "series"}, desk.with("t.h5")});
+}
+
+TEST_CASE("an export that was killed anywhere leaves in the end what it would have left at once", "[faults][kills]") {
+  const Workshop desk;
+  kill_everywhere(desk, {"export", 15, {"export", "t.h5", "-q", "--csv", "t.csv", "--vtk", "v", "--ply", "p", "--latitudes", "6"},
+                         desk.with("t.h5")});
+}
+
+TEST_CASE("baselines whose renewal was killed anywhere are in the end what they would have been at once", "[faults][kills]") {
+  const Workshop desk;
+  kill_everywhere(desk, {"compare --update", 10, {"compare", "expected", "actual", "-q", "--update"}, [](const fs::path& work) {
+                           for (const char* folder : {"expected", "actual"}) fs::create_directories(work / folder / "deep");
+                           render::Image image(24, 16, 3);
+                           for (const std::string name : {"a.png", "b.png", "deep/c.png", "deep/d.png"}) {
+                             render::write_png(work / "actual" / name, image);
+                             for (auto& value : image.pixels) value = static_cast<std::uint8_t>(value + 60);
+                             if (name != "deep/d.png") render::write_png(work / "expected" / name, image);
+                           }
+                         }});
 }
