@@ -66,9 +66,8 @@ struct Reader {
   void operator()(int& value) { value = int(whole(0, std::numeric_limits<int>::max())); }
   void operator()(std::int64_t& value) { value = std::int64_t(whole(0, 0x1p53)); }
   void operator()(Matrix& m) {
-    const double left = double(numbers.size() - at);
-    const double rows = whole(0, left), columns = whole(0, left);
-    if (rows * columns > left) refuse("it is cut short");
+    const double rows = whole(0, double(numbers.size())), columns = whole(0, double(numbers.size()));
+    if (rows * columns > double(numbers.size() - at)) refuse("it is cut short");  // behind the two
     m = Eigen::Map<const Matrix>(numbers.data() + at, Eigen::Index(rows), Eigen::Index(columns));
     if (!m.allFinite() || (m.array().abs() > largest_number).any()) refuse("a number in it is impossible");
     at += std::size_t(m.size());

@@ -239,6 +239,7 @@ void create_with_hdf5(const std::filesystem::path& draft, const std::vector<Data
     Making::check(H5Pset_obj_track_times(creation, false));  // or the root group carries the time of day
     const hid_t access = made(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     Making::check(H5Pset_file_locking(access, false, true));  // the draft is locked already
+    Making::check(H5Pset_fapl_sec2(access));
     // Checksummed metadata, no consistency flags; all of it at the head of the file.
     Making::check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18));
     Making::check(H5Pset_meta_block_size(access, metadata_bytes));
@@ -436,6 +437,7 @@ std::optional<Map> map(const Descriptor& file) {
   start_hdf5();
   try {
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "the file");
+    H5Pset_fapl_sec2(access);                  // plain files, whatever the environment asks of HDF5
     H5Pset_file_locking(access, false, true);  // a reader must neither block a writer nor need a writable folder
     const Handle h5(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose, "the index of the file");
     void* descriptor = nullptr;

@@ -259,9 +259,13 @@ TEST_CASE("a resume record whose checksum fits is read as strictly as a state", 
   }
   CHECK(forged > 500);
   CHECK(forged - accepted > 400);
-  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, whole.size() / 2, whole.size() - 1}) {
-    CHECK_THROWS_AS(sim::deserialised(std::span(whole).first(size), reader.layout()), std::runtime_error);
+  // Cut anywhere, in memory that ends there.
+  int refused = 0;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const std::vector<double> part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    refused += !message_of([&] { sim::deserialised(part, reader.layout()); }).empty();
   }
+  CHECK(refused == static_cast<int>(whole.size()));
   std::vector<double> longer = whole;
   longer.push_back(0);
   CHECK_THROWS_AS(sim::deserialised(longer, reader.layout()), std::runtime_error);
