@@ -104,7 +104,7 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) { app.add_flag("--dry-run", o.dry_run, "print the resolved scene, do nothing"); }},
     {"quiet", [](CLI::App& app, Options& o) { app.add_flag("-q,--quiet", o.quiet, "say nothing but errors"); }},
     {"resume", [](CLI::App& app, Options& o) { app.add_flag("--resume", o.resume, "continue a trajectory"); }},
-    {"force", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace earlier results"); }},
+    {"force", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace earlier results; a single file also when it is somebody else's"); }},
     {"gl",
      [](CLI::App& app, Options& o) {
        app.add_option("--gl", o.gl, "OpenGL by auto, osmesa, egl, egl:N or software")->capture_default_str();

@@ -6,14 +6,16 @@
 #include "message.h"
 #include "mesh_export.h"
 #include "output.h"
+#include "owned_files.h"
+#include "printable.h"
 #include "progress.h"
 #include "reference.h"
 #include "scene_file.h"
 #include "summary.h"
 
-#include <fmt/format.h>
+#include "sim/input_file.h"
 
-#include <fstream>
+#include <fmt/format.h>
 
 namespace app {
 
@@ -21,13 +23,16 @@ int info(const Options& options) {
   const std::filesystem::path& path = options.inputs.front();
   if (std::filesystem::is_directory(path))
     throw std::runtime_error(fmt::format("'{}' is a folder; give a trajectory, a scene or a frame in it", path.string()));
-  if (!std::filesystem::is_regular_file(path))
-    throw std::runtime_error(fmt::format("there is no file '{}'", path.string()));
-  char start[8] = {};
-  std::ifstream(path, std::ios::binary).read(start, sizeof start);
-  const std::string_view signature(start, sizeof start);
-  if (signature == "\211HDF\r\n\032\n") fmt::print("{}", trajectory_summary(path));
-  else if (signature == "\211PNG\r\n\032\n") fmt::print("{}", picture_summary(path));
+  if (!std::filesystem::exists(path)) throw std::runtime_error(fmt::format("there is no file '{}'", path.string()));
+  std::string why;
+  std::ifstream in = sim::open_input(path, why);
+  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), why));
+  std::string start(8, '\0');
+  start.resize(static_cast<std::size_t>(in.read(start.data(), 8).gcount()));
+  // A beginning alone is told to be one.
+  const auto begins = [&start](std::string_view signature) { return start.size() > 1 && signature.starts_with(start); };
+  if (begins("\211HDF\r\n\032\n")) fmt::print("{}", trajectory_summary(path));
+  else if (begins("\211PNG\r\n\032\n")) fmt::print("{}", picture_summary(path));
   else fmt::print("{}", scene_summary(read_scene(path, options.set)));
   return 0;
 }
@@ -36,25 +41,36 @@ int export_states(const Options& options) {
   if (options.csv.empty() && options.vtk.empty() && options.ply.empty())
     throw std::runtime_error("say what to write: --csv FILE, --vtk DIR or --ply DIR");
   const sim::TrajectoryReader trajectory(options.inputs.front());
-  if (!options.csv.empty()) write_whole_file(options.csv, csv_text(trajectory));
+  ResultFiles files(options.inputs, options.force);
+  // Before the first of them is written.
+  if (!options.csv.empty()) files.require(options.csv);
+  if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_series);
+  for (std::int64_t k = 0; k < trajectory.count(); ++k) {
+    if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_name(k));
+    for (int v = 0; !options.ply.empty() && v < trajectory.layout().vesicles; ++v)
+      files.require_inside(options.ply / ply_name(static_cast<std::size_t>(v), k));
+  }
+  if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory));
   struct Kind {
     const std::filesystem::path& folder;
-    std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const ExportProgress&);
+    std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
   };
   for (const auto& [folder, write] : {Kind{options.vtk, export_vtk}, Kind{options.ply, export_ply}}) {
     if (folder.empty()) continue;
     Progress progress("exporting", options.quiet);
-    const std::int64_t states = write(trajectory, {folder, options.latitudes}, [&](std::int64_t k, std::int64_t count) {
+    const std::int64_t states = write(trajectory, {folder, options.latitudes}, files.writer_inside(), [&](std::int64_t k, std::int64_t count) {
       progress.show(static_cast<double>(k) / static_cast<double>(count), fmt::format("state {} of {}", k + 1, count));
       return !interrupted();
     });
     progress.clear();
     if (states < trajectory.count()) {
+      files.settle();
       tell(fmt::format("interrupted; {} of {} states are in '{}'", states, trajectory.count(), folder.string()));
       return interrupted_status;
     }
-    if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", folder.string(), states);
+    if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", printable(folder.string()), states);
   }
+  files.settle();
   return 0;
 }
 

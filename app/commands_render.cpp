@@ -6,8 +6,11 @@
 #include "interrupt.h"
 #include "message.h"
 #include "movie_formats.h"
-#include "scene_file.h"
+#include "output.h"
+#include "owned_files.h"
+#include "printable.h"
 #include "scene_text.h"
+#include "trajectory_scene.h"
 #include "workers.h"
 
 #include <fmt/format.h>
@@ -21,11 +24,8 @@ namespace {
 /// The scene of a trajectory with changes to its pictures; changes to its physics are refused.
 Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path, const std::vector<std::string>& changes) {
   if (trajectory.count() == 0) throw std::runtime_error(fmt::format("trajectory '{}' has no state", path.string()));
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const std::string name = path.string() + " (its scene)";
-  const std::string& text = trajectory.header().scene;
-  const Settings simulated = parse_scene(text, name, folder, {}, SceneUse::draw);
-  Settings changed = parse_scene(text, name, folder, changes, SceneUse::draw);
+  const Settings simulated = scene_in(trajectory, path);
+  Settings changed = scene_in(trajectory, path, changes);
   if (physics_hash(changed.scene) != physics_hash(simulated.scene))
     throw std::runtime_error(fmt::format("'{}' has been simulated already: --set can change its view, movie and figures "
                                          "only", path.string()));
@@ -49,8 +49,11 @@ int render(const Options& options) {
   if (options.time) {
     fs::path still = options.output.empty() ? here / "still.png" : options.output;
     if (fs::is_directory(still)) still /= "still.png";
-    render_still(sources, *options.time, still, options);
-    if (!options.quiet) fmt::print("{}\n", still.string());
+    ResultFiles files(options.inputs, options.force);
+    files.require(still);
+    render_still(sources, *options.time, still, files, options);
+    files.settle();
+    if (!options.quiet) fmt::print("{}\n", printable(still.string()));
     return 0;
   }
   const fs::path folder = options.output.empty() ? here : options.output;
@@ -58,17 +61,23 @@ int render(const Options& options) {
     tell("interrupted; the same command continues");
     return interrupted_status;
   };
+  {
+    OwnedFiles there(folder);
+    adopt_movie(there, movie_name(find_movie_format(settings.front().movie.format)));
+    require_pictures(there, settings.front());
+  }
   if (options.jobs > 1 && options.shards == 1) {
     check_movie(find_movie_format(settings.front().movie.format), settings.front().view.size[0], settings.front().view.size[1]);
     if (!draw_in_processes(options, folder)) return stopped();
   }
   const FolderLock lock(folder, options.shard, options.shards);
-  const FrameReport report = render_frames(sources, folder, options);
+  OwnedFiles files(folder);
+  const FrameReport report = render_frames(sources, files, options);
   if (report.interrupted) return stopped();
   if (!options.quiet) {
-    fmt::print("{}: {} frames drawn, {} kept\n", (folder / "frames").string(), report.drawn, report.kept);
+    fmt::print("{}: {} frames drawn, {} kept\n", printable((folder / "frames").string()), report.drawn, report.kept);
     for (const fs::path& file : {report.movie, report.poster})
-      if (!file.empty()) fmt::print("{}\n", file.string());
+      if (!file.empty()) fmt::print("{}\n", printable(file.string()));
   }
   if (!report.remark.empty()) tell(report.remark);
   return report.movie_failed ? 1 : 0;
@@ -85,7 +94,7 @@ int figure(const Options& options) {
   }
   const auto folder_of = [](const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); };
   fs::path stem = options.output.empty() ? folder_of(options.inputs.front()) / options.word : options.output;
-  for (const char* extension : {".png", ".svg", ".pdf", ".csv"})
+  for (const char* extension : render::figure_extensions)
     if (stem.extension() == extension) stem.replace_extension();
   std::error_code error;
   fs::create_directories(folder_of(stem), error);
@@ -93,15 +102,21 @@ int figure(const Options& options) {
   // Curves of several trajectories share a figure; pictures of states get one each.
   std::vector<std::vector<FigureSource>> sets;
   for (std::size_t k = 0; k < trajectories.size(); ++k) {
-    const std::string name = trajectories.size() > 1 ? settings[k].scene.title : std::string();
+    const std::string name = trajectories.size() > 1 ? printable(settings[k].scene.title) : std::string();
     if (sets.empty() || !takes_several(options.word)) sets.emplace_back();
     sets.back().push_back({trajectories[k], settings[k], name});
   }
+  ResultFiles files(options.inputs, options.force);
+  std::vector<fs::path> stems;
   for (std::size_t k = 0; k < sets.size(); ++k) {
-    const fs::path file = sets.size() == 1 ? stem : fs::path(fmt::format("{}-{}", stem.string(), k));
-    for (const fs::path& written : draw_figure(sets[k], sets[k].front().settings.figures.front(), file, options))
-      if (!options.quiet) fmt::print("{}\n", written.string());
+    stems.push_back(sets.size() == 1 ? stem : fs::path(fmt::format("{}-{}", stem.string(), k)));
+    for (const char* extension : render::figure_extensions) files.require(stems.back().string() + extension);
   }
+  for (std::size_t k = 0; k < sets.size(); ++k)
+    for (const fs::path& written :
+         draw_figure(sets[k], sets[k].front().settings.figures.front(), stems[k], files.writer(), options))
+      if (!options.quiet) fmt::print("{}\n", printable(written.string()));
+  files.settle();
   return 0;
 }
 

@@ -7,6 +7,7 @@
 #include "message.h"
 #include "movie_formats.h"
 #include "output.h"
+#include "printable.h"
 #include "scene_file.h"
 #include "scene_text.h"
 #include "simulation.h"
@@ -30,7 +31,7 @@ Settings requested_scene(const Options& options) {
 }
 
 void say(const Options& options, const std::string& line) {
-  if (!options.quiet) fmt::print("{}\n", line);
+  if (!options.quiet) fmt::print("{}\n", printable(line));
 }
 
 /// Tells how a simulation ended; the exit status.
@@ -50,10 +51,13 @@ int report_end(const SimulationReport& report, const fs::path& trajectory, const
 }
 
 /// The resolved scene.toml must not take the place of a scene that somebody wrote.
-void protect_scene(const fs::path& scene, const fs::path& folder) {
+void protect_scene(const fs::path& scene, const OwnedFiles& files, const Settings& settings) {
   std::error_code error;
-  const fs::path resolved = folder / "scene.toml";
-  if (fs::equivalent(scene, resolved, error) && read_whole_file(scene) != write_scene(read_scene(scene)))
+  const fs::path resolved = files.folder() / "scene.toml";
+  if (!fs::equivalent(scene, resolved, error)) return;
+  const std::string text = read_whole_file(scene);
+  const bool changes = text != write_scene(settings);
+  if (changes && (text != write_scene(read_scene(scene)) || files.foreign("scene.toml")))
     throw std::runtime_error(fmt::format("the resolved scene would overwrite '{}' itself; give another -o", scene.string()));
 }
 
@@ -68,33 +72,35 @@ int print_plan(const Settings& settings) {
 int run(const Options& options) {
   const Settings settings = requested_scene(options);
   const fs::path folder = options.output.empty() ? fs::path("out") / options.inputs.front().stem() : options.output;
-  protect_scene(options.inputs.front(), folder);
-  if (options.dry_run) {
-    inspect_folder(folder, settings, options.force);
-    return print_plan(settings);
+  const fs::path trajectory = folder / "trajectory.h5";
+  {
+    OwnedFiles there(folder);
+    protect_scene(options.inputs.front(), there, settings);
+    if (inspect_folder(there, settings, options.force) != FolderState::fresh && fs::exists(trajectory))
+      check_further(settings, trajectory);
   }
+  if (options.dry_run) return print_plan(settings);
   // Before hours of simulation: can there be pictures at all?
   render::GlContext(render::parse_gl_choice(options.gl));
   check_movie(find_movie_format(settings.movie.format), settings.view.size[0], settings.view.size[1]);
-  inspect_folder(folder, settings, options.force);
-  FolderLock lock(folder);
-  const FolderState state = claim_folder(folder, settings, options.force);
-  const fs::path trajectory = folder / "trajectory.h5";
-  SimulationReport report;
-  try {
-    report = state != FolderState::fresh && fs::exists(trajectory) ? simulate_further(settings, trajectory, options)
-                                                                   : simulate_new(settings, trajectory, options);
-  } catch (...) {
-    lock.release();
-    release_folder(folder);
-    throw;
-  }
+  const FolderLock lock(folder);
+  OwnedFiles files(folder);
+  const FolderState state = inspect_folder(files, settings, options.force);
+  bool claimed = false;
+  const auto claim = [&] {  // once it is known that the scene can be simulated
+    if (!claimed) claim_folder(files, settings, state);
+    claimed = true;
+  };
+  const SimulationReport report = state != FolderState::fresh && fs::exists(trajectory)
+                                      ? simulate_further(settings, trajectory, options, claim)
+                                      : simulate_new(settings, trajectory, options, claim);
+  claim();
   const int status = report_end(report, trajectory, options);
   if (report.interrupted) return status;
 
   // A simulation that stopped early is drawn as far as it went: that is where one looks for the reason.
   const sim::TrajectoryReader reader(trajectory);
-  const FrameReport frames = render_frames({{reader, settings}}, folder, options);
+  const FrameReport frames = render_frames({{reader, settings}}, files, options);
   if (frames.interrupted) {
     tell(fmt::format("interrupted; {} frames are in '{}'; the same command continues",
                frames.drawn + frames.kept, (folder / "frames").string()));
@@ -105,10 +111,12 @@ int run(const Options& options) {
   if (!frames.poster.empty()) say(options, frames.poster.string());
   if (!frames.remark.empty())
     tell(fmt::format("{}; the frames are in '{}'", frames.remark, (folder / "frames").string()));
+  const sim::FileWriter write = [&](const fs::path& path, std::string_view bytes) { files.write(path.filename().string(), bytes); };
   for (const render::FigureParameters& figure : settings.figures) {
     const fs::path stem = folder / (figure.out.empty() ? figure.kind : figure.out);
-    for (const fs::path& file : draw_figure({{reader, settings, {}}}, figure, stem, options)) say(options, file.string());
+    for (const fs::path& file : draw_figure({{reader, settings, {}}}, figure, stem, write, options)) say(options, file.string());
   }
+  files.settle();
   return frames.movie_failed ? 1 : status;
 }
 

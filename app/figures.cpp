@@ -330,9 +330,9 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
 }
 
 std::vector<std::filesystem::path> draw_figure(const std::vector<FigureSource>& sources,
-                                               const render::FigureParameters& parameters,
-                                               const std::filesystem::path& stem, const Options& options) {
-  return render::write_figure(make_figure(sources, parameters, options), stem);
+                                               const render::FigureParameters& parameters, const std::filesystem::path& stem,
+                                               const sim::FileWriter& write, const Options& options) {
+  return render::write_figure(make_figure(sources, parameters, options), stem, {}, write);
 }
 
 }  // namespace app

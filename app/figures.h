@@ -25,8 +25,8 @@ bool takes_several(std::string_view kind);
 /// Kinds that show states take the first source only.
 render::Figure make_figure(const std::vector<FigureSource>&, const render::FigureParameters&, const Options&);
 
-/// Writes stem.png, .svg, .pdf and .csv and returns their paths.
+/// stem.png, .svg, .pdf and .csv, put in their places by `write`; returns their paths.
 std::vector<std::filesystem::path> draw_figure(const std::vector<FigureSource>&, const render::FigureParameters&,
-                                               const std::filesystem::path& stem, const Options&);
+                                               const std::filesystem::path& stem, const sim::FileWriter& write, const Options&);
 
 }  // namespace app

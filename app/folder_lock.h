@@ -5,7 +5,7 @@
 
 namespace app {
 
-/// Locks on files in the folder. They go with the lock, and so does a folder that was made for them and holds nothing else;
+/// Locks on files in the folder, which hold the number of the process. They go with the lock, and so does a folder that was made for them and holds nothing else;
 /// the system gives them back when the process dies, however it dies.
 class FolderLock {
  public:
@@ -25,6 +25,8 @@ class FolderLock {
     bool take(bool shared);
     void release();
   };
+  static void remove_dead_parts(const std::filesystem::path& folder);
+
   std::filesystem::path made_;  ///< the folder, if it was not there
   File whole_, part_;
 };

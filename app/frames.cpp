@@ -3,16 +3,14 @@
 #include "interrupt.h"
 #include "movie.h"
 #include "output.h"
+#include "printable.h"
 #include "progress.h"
 #include "version.h"
-
-#include "render/file.h"
 
 #include <fmt/format.h>
 
 #include <stdlib.h>
 
-#include <charconv>
 #include <cmath>
 #include <future>
 
@@ -65,7 +63,7 @@ const PictureSource& longest(const std::vector<PictureSource>& sources) {
 }
 
 render::PngText picture_text(const PictureSource& source, const Studio& studio, double time, const std::string& hash) {
-  render::PngText text{{"Title", source.settings.scene.title},
+  render::PngText text{{"Title", printable(source.settings.scene.title)},
                        {"Software", "tanktread " + version()},
                        {"tanktread:time", fmt::format("{:.12g}", time)},
                        {hash_key, hash}};
@@ -75,40 +73,24 @@ render::PngText picture_text(const PictureSource& source, const Studio& studio, 
 
 std::string hash_of(const Production& production, double time) { return fmt::format("{}-{:.17g}", production.hash, time); }
 
-fs::path name_of_frame(std::size_t number) { return fmt::format("{:06}.png", number); }
-
 /// The numbers of the frames that this process draws, and what becomes of them.
 struct Task {
   std::size_t number;
   bool current;
 };
 
-std::vector<Task> tasks_of(const Production& production, const std::vector<double>& times, const fs::path& frames,
+std::vector<Task> tasks_of(const Production& production, const std::vector<double>& times, OwnedFiles& files,
                            const Options& options) {
   std::vector<Task> tasks;
   for (auto f = static_cast<std::size_t>(options.shard); f < times.size(); f += static_cast<std::size_t>(options.shards)) {
+    files.require(frame_name(f));
     const bool current =
-        options.shader_dir.empty() && is_current(frames / name_of_frame(f), hash_of(production, times[f]));
+        options.shader_dir.empty() && is_current(files.folder() / frame_name(f), hash_of(production, times[f]));
+    if (current && !files.listed(frame_name(f))) files.adopt(frame_name(f));
     tasks.push_back({f, current});
   }
   return tasks;
 }
-
-/// Half-written frames of earlier processes that were killed, as far as they are ours to draw: ".000012.png.NUMBER.tmp".
-void remove_drafts(const fs::path& frames, const Options& options) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(frames, error)) {
-    const std::string name = entry.path().filename().string();
-    long long number = 0;
-    const auto [end, wrong] = std::from_chars(name.data() + !name.empty(), name.data() + name.size(), number);
-    if (name.starts_with('.') && wrong == std::errc() && std::string_view(end).starts_with(".png.") && name.ends_with(".tmp") &&
-        number % options.shards == options.shard)
-      fs::remove(entry.path(), error);
-  }
-}
-
-/// What a movie was made of, in a hidden file beside its frames: the frames alone do not tell how fast they were shown.
-fs::path record_of(const fs::path& movie) { return movie.parent_path() / "frames" / fmt::format(".{}", movie.filename().string()); }
 
 std::string movie_record(const Production& production, std::size_t frames, const render::MovieParameters& settings,
                          const fs::path& movie) {
@@ -116,26 +98,26 @@ std::string movie_record(const Production& production, std::size_t frames, const
                      production.hash);
 }
 
-bool is_current_movie(const fs::path& movie, const Production& production, std::size_t frames,
+bool is_current_movie(const OwnedFiles& files, const std::string& movie, const Production& production, std::size_t frames,
                       const render::MovieParameters& settings) {
-  const fs::path record = record_of(movie);
-  return fs::exists(movie) && fs::exists(record) &&
-         read_whole_file(record) == movie_record(production, frames, settings, movie);
+  const fs::path path = files.folder() / movie, record = files.folder() / record_of_movie(movie);
+  return fs::exists(path) && fs::exists(record) &&
+         read_whole_file(record) == movie_record(production, frames, settings, path);
 }
 
-void remove_movie(const fs::path& movie) {
-  std::error_code error;
-  fs::remove(record_of(movie), error);
-  fs::remove(movie, error);
-  if (error) throw std::runtime_error(fmt::format("cannot replace '{}': {}", movie.string(), error.message()));
+void remove_movie(OwnedFiles& files, const std::string& movie) {
+  files.remove(record_of_movie(movie));
+  files.remove(movie);
 }
 
 /// A copy of the frame nearest to `wanted`.
-fs::path write_poster(const fs::path& folder, const std::vector<double>& times, double wanted) {
+fs::path write_poster(OwnedFiles& files, const std::vector<double>& times, double wanted) {
   const auto nearest = std::min_element(times.begin(), times.end(),
                                         [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
-  const fs::path poster = folder / "poster.png";
-  render::write_file(poster, read_whole_file(folder / "frames" / name_of_frame(static_cast<std::size_t>(nearest - times.begin()))));
+  const std::string frame = read_whole_file(files.folder() / frame_name(static_cast<std::size_t>(nearest - times.begin())));
+  const fs::path poster = files.folder() / poster_name;
+  if (!fs::exists(poster) || read_whole_file(poster) != frame) files.write(poster_name, frame);
+  else if (!files.listed(poster_name)) files.adopt(poster_name);
   return poster;
 }
 
@@ -159,31 +141,37 @@ struct Film {
 
 }  // namespace
 
-FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::path& folder, const Options& options) {
+FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
   const Settings& settings = sources.front().settings;
   const MovieFormat& format = find_movie_format(settings.movie.format);
-  const fs::path frames = folder / "frames", movie = folder / movie_name(format);
+  const std::string name = movie_name(format);
+  const fs::path frames = files.folder() / "frames", movie = files.folder() / name;
   if (options.shards == 1) check_movie(format, settings.view.size[0], settings.view.size[1]);
   const Production production = prepare_pictures(sources);
   const std::vector<double> times = frame_times(longest(sources).trajectory, settings.movie);
+  adopt_movie(files, name);
+  if (options.shards == 1) require_pictures(files, settings);
+  else files.require_frames(true);
   std::error_code error;
   fs::create_directories(frames, error);
   if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", frames.string(), error.message()));
 
-  remove_drafts(frames, options);
+  files.clean();
   FrameReport report;
-  const std::vector<Task> tasks = tasks_of(production, times, frames, options);
+  const std::vector<Task> tasks = tasks_of(production, times, files, options);
   for (const Task& task : tasks) report.kept += task.current;
   const bool all_kept = report.kept == static_cast<std::int64_t>(tasks.size());
   // A movie that is there is one of all these frames: it goes before the first of them does.
-  if (!all_kept) remove_movie(movie);
-  if (all_kept && is_current_movie(movie, production, times.size(), settings.movie)) report.movie = movie;
+  if (!all_kept) remove_movie(files, name);
+  if (all_kept && is_current_movie(files, name, production, times.size(), settings.movie)) report.movie = movie;
   const bool encode = options.shards == 1 && report.movie.empty();
   const auto finish_poster = [&] {
-    if (options.shards == 1 && settings.movie.poster) report.poster = write_poster(folder, times, *settings.movie.poster);
+    if (options.shards == 1 && settings.movie.poster) report.poster = write_poster(files, times, *settings.movie.poster);
   };
   if (all_kept && !encode) {
+    if (options.shards == 1) files.remove_frames(static_cast<std::int64_t>(times.size()));
     finish_poster();
+    files.settle();
     return report;
   }
 
@@ -193,8 +181,8 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
   Film film{{}, report};
   if (encode) {
     try {
-      film.encoder.emplace(format, movie, production.width, production.height, settings.movie.frame_rate);
-      remove_movie(movie);
+      film.encoder.emplace(format, files, production.width, production.height, settings.movie.frame_rate);
+      remove_movie(files, name);
     } catch (const FfmpegMissing& missing) {
       report.remark = missing.what();
     }
@@ -212,7 +200,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
   Progress progress("rendering", options.quiet);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const Task& task = tasks[i];
-    const fs::path path = frames / name_of_frame(task.number);
+    const std::string path = frame_name(task.number);
     if (interrupted()) {
       report.interrupted = true;
       break;
@@ -220,7 +208,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
     progress.show(static_cast<double>(i) / static_cast<double>(tasks.size()),
                   fmt::format("frame {} of {}", i + 1, tasks.size()));
     if (task.current) {
-      if (film.encoder) film.attempt([&] { film.encoder->add(render::read_png(path).image); });
+      if (film.encoder) film.attempt([&] { film.encoder->add(render::read_png(files.folder() / path).image); });
       continue;
     }
     if (!studio) studio.emplace(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
@@ -230,22 +218,26 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, const fs::p
     // A picture by shaders under work is never taken for a finished one.
     const std::string hash = options.shader_dir.empty() ? hash_of(production, times[task.number]) : "";
     const render::PngText text = picture_text(sources.front(), *studio, times[task.number], hash);
-    writing = std::async(std::launch::async, [image, path, text] { render::write_png(path, *image, text); });
+    writing = std::async(std::launch::async, [&files, image, path, text] {
+      files.write(path, render::png_bytes(*image, text));
+    });
     ++report.drawn;
   }
   written();
   if (report.interrupted) return report;
-  if (options.shards == 1) remove_frames(frames, static_cast<std::int64_t>(times.size()));
+  if (options.shards == 1) files.remove_frames(static_cast<std::int64_t>(times.size()));
   film.attempt([&] {
     film.encoder->finish();
-    render::write_file(record_of(movie), movie_record(production, times.size(), settings.movie, movie));
+    files.write(record_of_movie(name), movie_record(production, times.size(), settings.movie, movie));
     report.movie = movie;
   });
   finish_poster();
+  files.settle();
   return report;
 }
 
-void render_still(const std::vector<PictureSource>& sources, double time, const fs::path& path, const Options& options) {
+void render_still(const std::vector<PictureSource>& sources, double time, const fs::path& path, ResultFiles& files,
+                  const Options& options) {
   const double end = end_of(longest(sources));
   if (time < 0 || time > end * (1 + 1e-9))
     throw std::invalid_argument(fmt::format("the trajectory goes from t = 0 to t = {:.6g}; there is no t = {:.6g}", end, time));
@@ -253,7 +245,7 @@ void render_still(const std::vector<PictureSource>& sources, double time, const 
   if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
   Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
   const render::Image image = draw_picture(studio, production, time);
-  render::write_png(path, image, picture_text(sources.front(), studio, time, hash_of(production, time)));
+  files.write(path, render::png_bytes(image, picture_text(sources.front(), studio, time, hash_of(production, time))));
 }
 
 }  // namespace app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "options.h"
+#include "owned_files.h"
 #include "pictures.h"
 
 namespace app {
@@ -24,10 +25,11 @@ struct FrameReport {
 
 /// Draws this shard's missing frames into folder/frames and, with one shard only, the movie beside it. Several sources
 /// stand side by side; the movie lasts as long as the longest, the others stand still at their ends.
-/// A movie that was made of the very same frames at the same rate is kept.
-FrameReport render_frames(const std::vector<PictureSource>&, const std::filesystem::path& folder, const Options&);
+/// A movie that was made of the very same frames at the same rate is kept. Throws before anything is changed where a name that
+/// is needed belongs to somebody else.
+FrameReport render_frames(const std::vector<PictureSource>&, OwnedFiles& folder, const Options&);
 
 /// The picture of one instant. Throws std::invalid_argument when the trajectory does not reach it.
-void render_still(const std::vector<PictureSource>&, double time, const std::filesystem::path&, const Options&);
+void render_still(const std::vector<PictureSource>&, double time, const std::filesystem::path&, ResultFiles&, const Options&);
 
 }  // namespace app

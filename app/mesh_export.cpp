@@ -158,31 +158,36 @@ void make_folder(const fs::path& folder) {
 
 }  // namespace
 
-std::int64_t export_vtk(const sim::TrajectoryReader& trajectory, const MeshExport& how, const ExportProgress& progress) {
+std::string vtk_name(std::int64_t state) { return fmt::format("state-{:06}.vtp", state); }
+std::string ply_name(std::size_t vesicle, std::int64_t state) { return fmt::format("vesicle-{}-{:06}.ply", vesicle, state); }
+
+std::int64_t export_vtk(const sim::TrajectoryReader& trajectory, const MeshExport& how, const sim::FileWriter& write,
+                        const ExportProgress& progress) {
   make_folder(how.folder);
   Sampler sampler(how.latitudes);
   std::string series;
   std::int64_t k = 0;
   for (; k < trajectory.count() && progress(k, trajectory.count()); ++k) {
     const sim::State state = trajectory.state(k);
-    const std::string name = fmt::format("state-{:06}.vtp", k);
-    write_whole_file(how.folder / name, vtk_text(state, sampler));
+    const std::string name = vtk_name(k);
+    write(how.folder / name, vtk_text(state, sampler));
     series += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", state.time, name);
   }
-  write_whole_file(how.folder / "series.pvd",
+  write(how.folder / vtk_series,
                    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n" +
                        series + "</Collection>\n</VTKFile>\n");
   return k;
 }
 
-std::int64_t export_ply(const sim::TrajectoryReader& trajectory, const MeshExport& how, const ExportProgress& progress) {
+std::int64_t export_ply(const sim::TrajectoryReader& trajectory, const MeshExport& how, const sim::FileWriter& write,
+                        const ExportProgress& progress) {
   make_folder(how.folder);
   Sampler sampler(how.latitudes);
   std::int64_t k = 0;
   for (; k < trajectory.count() && progress(k, trajectory.count()); ++k) {
     const sim::State state = trajectory.state(k);
     for (std::size_t v = 0; v < state.vesicles.size(); ++v)
-      write_whole_file(how.folder / fmt::format("vesicle-{}-{:06}.ply", v, k), ply_text(state.vesicles[v], v, state.time, sampler));
+      write(how.folder / ply_name(v, k), ply_text(state.vesicles[v], v, state.time, sampler));
   }
   return k;
 }

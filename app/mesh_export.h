@@ -1,10 +1,12 @@
 // `tanktread export --vtk` and `--ply`: saved states as triangle meshes with fields, for ParaView and for Blender.
 #pragma once
 
+#include "sim/result_file.h"
 #include "sim/trajectory.h"
 
 #include <filesystem>
 #include <functional>
+#include <string>
 
 namespace app {
 
@@ -30,10 +32,15 @@ inline constexpr MeshField mesh_fields[] = {
 /// Hears (state, of states) before each; false stops.
 using ExportProgress = std::function<bool(std::int64_t, std::int64_t)>;
 
+/// Names in the folder.
+std::string vtk_name(std::int64_t state);
+inline constexpr const char vtk_series[] = "series.pvd";
+std::string ply_name(std::size_t vesicle, std::int64_t state);
+
 /// FOLDER/state-000000.vtp, ... with all vesicles, and FOLDER/series.pvd with the times. The series names whole files only;
 /// it is written last. Returns the number of states.
-std::int64_t export_vtk(const sim::TrajectoryReader&, const MeshExport&, const ExportProgress&);
+std::int64_t export_vtk(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
 /// FOLDER/vesicle-0-000000.ply, ...: one file a vesicle and state, binary.
-std::int64_t export_ply(const sim::TrajectoryReader&, const MeshExport&, const ExportProgress&);
+std::int64_t export_ply(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
 
 }  // namespace app

@@ -1,11 +1,18 @@
 #include "message.h"
 
+#include "printable.h"
+
 #include <cstdio>
+#include <new>
 
 namespace app {
 
 void tell(std::string_view sentence) noexcept {
-  std::fprintf(stderr, "tanktread: %.*s\n", static_cast<int>(sentence.size()), sentence.data());
+  try {
+    std::fprintf(stderr, "tanktread: %s\n", printable(sentence).c_str());
+  } catch (const std::bad_alloc&) {
+    std::fputs("tanktread: there is not enough memory\n", stderr);
+  }
 }
 
 void tell_raw(std::string_view text) noexcept {

@@ -31,29 +31,25 @@ std::vector<std::string> arguments(const MovieFormat& format, const std::filesys
   return words;
 }
 
-/// Of runs that were killed.
-void remove_drafts(const std::filesystem::path& path) {
-  const std::string start = path.filename().string() + ".";
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(start) && name.ends_with(".tmp")) std::filesystem::remove(entry.path(), error);
+sim::Draft draft_in(const std::filesystem::path& folder) {
+  try {
+    return sim::Draft(folder / "movie");
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(fmt::format("no movie can be made in '{}': {}", folder.string(), error.code().message()));
   }
 }
 
 }  // namespace
 
-MovieEncoder::MovieEncoder(const MovieFormat& format, const std::filesystem::path& path, int width, int height,
-                           double frame_rate)
-    : path_(path), draft_(fmt::format("{}.{}.tmp", path.string(), ::getpid())), width_(width), height_(height) {
-  remove_drafts(path);
+MovieEncoder::MovieEncoder(const MovieFormat& format, OwnedFiles& folder, int width, int height, double frame_rate)
+    : folder_(folder), name_(movie_name(format)), draft_(draft_in(folder.folder())), width_(width), height_(height) {
   int frames[2];  // its input
   if (pipe2(frames, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
   int reason = 0;
   try {
     // An ffmpeg without its parent would go on with a movie that nobody waits for. Ctrl-C is for us: we end the movie in order.
     child_ = start_child({.file = "ffmpeg",
-                          .words = arguments(format, std::filesystem::absolute(draft_), width, height, frame_rate),
+                          .words = arguments(format, std::filesystem::absolute(draft_.path()), width, height, frame_rate),
                           .environment = {},
                           .input = frames[0],
                           .takes_ctrl_c = false,
@@ -75,8 +71,6 @@ MovieEncoder::~MovieEncoder() {
   if (child_ < 0) return;
   ::kill(child_, SIGKILL);
   wait_for_child(child_);
-  std::error_code ignored;
-  std::filesystem::remove(draft_, ignored);
 }
 
 void MovieEncoder::add(const render::Image& image) {
@@ -96,16 +90,16 @@ void MovieEncoder::add(const render::Image& image) {
 void MovieEncoder::finish() {
   ::close(std::exchange(pipe_, -1));
   const int status = wait_for_child(std::exchange(child_, -1));
-  std::error_code error;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
-    std::filesystem::rename(draft_, path_, error);
-    if (!error) return;
-    throw std::runtime_error(fmt::format("ffmpeg left no movie '{}': {}", path_.string(), error.message()));
-  }
-  std::filesystem::remove(draft_, error);
-  throw std::runtime_error(fmt::format("ffmpeg failed with {} {}; '{}' was not written",
-                                       WIFEXITED(status) ? "exit status" : "signal",
-                                       WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status), path_.string()));
+  const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (good && std::filesystem::file_size(draft_.path()) == 0)
+    throw std::runtime_error(fmt::format("ffmpeg left no movie '{}'", (folder_.folder() / name_).string()));
+  if (!good)
+    throw std::runtime_error(fmt::format("ffmpeg failed with {} {}; '{}' was not written",
+                                         WIFEXITED(status) ? "exit status" : "signal",
+                                         WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status),
+                                         (folder_.folder() / name_).string()));
+  folder_.list(name_, draft_);
+  folder_.publish(draft_, name_);
 }
 
 }  // namespace app

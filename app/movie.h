@@ -2,11 +2,12 @@
 #pragma once
 
 #include "movie_formats.h"
+#include "owned_files.h"
 
 #include "render/image.h"
 
-#include <filesystem>
 #include <stdexcept>
+#include <string>
 
 #include <sys/types.h>
 
@@ -14,8 +15,8 @@ namespace app {
 
 class MovieEncoder {
  public:
-  /// Starts ffmpeg for `path` (written beside it, renamed by finish()). Throws FfmpegMissing when there is none.
-  MovieEncoder(const MovieFormat&, const std::filesystem::path& path, int width, int height, double frame_rate);
+  /// Starts ffmpeg on a draft in the folder; finish() gives it its name. Throws FfmpegMissing when there is none.
+  MovieEncoder(const MovieFormat&, OwnedFiles& folder, int width, int height, double frame_rate);
   MovieEncoder(const MovieEncoder&) = delete;
   MovieEncoder& operator=(const MovieEncoder&) = delete;
   /// Without finish(): ffmpeg is stopped and nothing is left.
@@ -25,7 +26,9 @@ class MovieEncoder {
   void finish();
 
  private:
-  std::filesystem::path path_, draft_;
+  OwnedFiles& folder_;
+  std::string name_;
+  sim::Draft draft_;
   int width_, height_;
   pid_t child_ = -1;
   int pipe_ = -1;

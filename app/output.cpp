@@ -4,14 +4,15 @@
 #include "scene_file.h"
 #include "scene_text.h"
 
-#include "render/file.h"
+#include "render/figure.h"
+#include "sim/input_file.h"
+#include "sim/trajectory.h"
 
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
+#include <optional>
 #include <system_error>
 
 namespace app {
@@ -24,12 +25,13 @@ void write_whole_file(const fs::path& path, const std::string& text) {
       throw std::system_error(errno, std::generic_category(), "cannot write to standard output");
     return;
   }
-  render::write_file(path, text);
+  sim::write_file(path, text);
 }
 
 std::string read_whole_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
+  std::string why;
+  std::ifstream in = sim::open_input(path, why);
+  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), why));
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -46,67 +48,127 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-void remove_frames(const fs::path& folder, std::int64_t first) {
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string stem = entry.path().stem().string();
-    const bool ours = entry.path().extension() == ".png" && stem.size() >= 6 && stem.size() < 12 &&
-                      stem.find_first_not_of("0123456789") == std::string::npos;
-    if (ours && std::stoll(stem) >= first) fs::remove(entry.path(), error);
-  }
+std::vector<std::string> figure_names(const render::FigureParameters& figure) {
+  std::vector<std::string> names;
+  for (const char* extension : render::figure_extensions)
+    names.push_back((figure.out.empty() ? figure.kind : figure.out) + extension);
+  return names;
 }
 
-FolderState inspect_folder(const fs::path& folder, const Settings& settings, bool force) {
+namespace {
+
+constexpr const char scene_name[] = "scene.toml", trajectory_name[] = "trajectory.h5";
+
+/// A folder of an earlier version, which kept no list: a resolved scene beside its trajectory is ours, and so are the figures
+/// that the scene asks for.
+void adopt_earlier(OwnedFiles& files, const Settings& there, const std::string& text) {
+  if (!files.unlisted() || text != write_scene(there) || !sim::holds_trajectory(files.folder() / trajectory_name)) return;
+  try {
+    const sim::TrajectoryReader trajectory(files.folder() / trajectory_name);
+    const Settings simulated = parse_scene(trajectory.header().scene, "its scene", files.folder(), {}, SceneUse::draw);
+    if (!continuable(physics_differences(simulated.scene, there.scene))) return;
+  } catch (const std::exception&) {
+    return;
+  }
+  files.adopt(scene_name);
+  for (const render::FigureParameters& figure : there.figures)
+    for (const std::string& name : figure_names(figure)) files.adopt(name);
+}
+
+/// The trajectory tells by itself whose it is, and grows.
+void require_own_trajectory(const OwnedFiles& files) {
+  const fs::path path = files.folder() / trajectory_name;
+  const fs::file_status status = fs::symlink_status(path);
+  if (!fs::exists(status)) return;
+  if (fs::is_regular_file(status) && (fs::file_size(path) == 0 || sim::holds_trajectory(path))) return;
+  throw std::runtime_error(fmt::format("'{}' {}; it is left as it is: move it away, or give another -o", path.string(),
+                                       fs::is_symlink(status)
+                                           ? "is a link, and links are not followed out of a folder of results"
+                                           : "is not a trajectory of this program"));
+}
+
+}  // namespace
+
+void adopt_movie(OwnedFiles& files, const std::string& movie) {
+  const fs::path path = files.folder() / movie, record = files.folder() / record_of_movie(movie);
+  if (!files.unlisted() || !fs::is_regular_file(path) || !fs::is_regular_file(record)) return;
+  if (read_whole_file(record).find(fmt::format(", {} bytes, ", fs::file_size(path))) == std::string::npos) return;
+  files.adopt(record_of_movie(movie));
+  files.adopt(movie);
+}
+
+std::string record_of_movie(const std::string& movie) { return "frames/." + movie; }
+
+void require_pictures(const OwnedFiles& files, const Settings& settings) {
+  files.require_frames(true);
+  const std::string movie = movie_name(find_movie_format(settings.movie.format));
+  files.require(movie);
+  files.require(record_of_movie(movie));
+  if (settings.movie.poster) files.require(poster_name);
+}
+
+FolderState inspect_folder(OwnedFiles& files, const Settings& settings, bool force) {
+  const fs::path& folder = files.folder();
   if (fs::exists(folder) && !fs::is_directory(folder))
     throw std::runtime_error(fmt::format("'{}' is not a folder", folder.string()));
-  const fs::path scene = folder / "scene.toml";
-  if (!fs::exists(scene)) {
-    if (fs::exists(folder / "trajectory.h5") && !force)
+  const fs::path scene = folder / scene_name;
+  require_own_trajectory(files);
+  FolderState state = FolderState::fresh;
+  if (!fs::exists(fs::symlink_status(scene))) {
+    if (fs::exists(folder / trajectory_name) && !force)
       throw std::runtime_error(fmt::format("folder '{}' holds a trajectory without its scene.toml; give another -o, or "
                                            "--force to replace it", folder.string()));
-    return FolderState::fresh;
+  } else {
+    const std::string text = fs::is_regular_file(fs::symlink_status(scene)) ? read_whole_file(scene) : std::string();
+    std::optional<Settings> there;
+    std::string complaint;
+    try {
+      there = parse_scene(text, scene.string(), folder, {}, SceneUse::draw);
+      adopt_earlier(files, *there, text);
+      there->scene.numerics.threads = settings.scene.numerics.threads;
+    } catch (const std::exception& error) {
+      complaint = error.what();
+    }
+    const auto differences = there ? physics_differences(there->scene, settings.scene) : std::vector<SceneDifference>();
+    const bool same_simulation = there && continuable(differences);
+    if (same_simulation && !force)
+      state = write_scene(*there) == write_scene(settings) ? FolderState::same : FolderState::same_physics;
+    // A scene that says what the resolved one would say stays, whoever wrote it.
+    if (state != FolderState::same && text != write_scene(settings)) files.require(scene_name);
+    if (!there && !force)
+      throw std::runtime_error(fmt::format("folder '{}' holds a scene that cannot be read ({}); give another -o, or --force "
+                                           "to replace it", folder.string(), complaint));
+    if (!same_simulation && !force)
+      throw std::runtime_error(fmt::format("folder '{}' belongs to another scene: {}; give another -o, or --force to replace it",
+                                           folder.string(), text_of(differences)));
   }
-  Settings there;
-  try {
-    there = parse_scene(read_whole_file(scene), scene.string(), folder, {}, SceneUse::draw);
-  } catch (const std::exception& error) {
-    if (force) return FolderState::fresh;
-    throw std::runtime_error(fmt::format("folder '{}' holds a scene that cannot be read ({}); give another -o, or --force "
-                                         "to replace it", folder.string(), error.what()));
-  }
-  if (force) return FolderState::fresh;
-  if (physics_hash(there.scene) == physics_hash(settings.scene)) {
-    there.scene.numerics.threads = settings.scene.numerics.threads;
-    return write_scene(there) == write_scene(settings) ? FolderState::same : FolderState::same_physics;
-  }
-  throw std::runtime_error(fmt::format("folder '{}' belongs to another scene, '{}'; give another -o, or --force to replace "
-                                       "it", folder.string(), there.scene.title));
-}
-
-void release_folder(const fs::path& folder) {
-  if (fs::exists(folder / "trajectory.h5")) return;
-  std::error_code error;
-  fs::remove(folder / "scene.toml", error);
-  fs::remove(folder, error);  // if it is empty
-}
-
-FolderState claim_folder(const fs::path& folder, const Settings& settings, bool force) {
-  const FolderState state = inspect_folder(folder, settings, force);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
-  // Only what an earlier run of ours left there: its scene.toml says so.
-  if (state == FolderState::fresh && fs::exists(folder / "scene.toml")) {
-    for (const char* old : {"trajectory.h5", "poster.png", "scene.toml"}) fs::remove(folder / old, error);
-    for (const MovieFormat& format : movie_formats()) fs::remove(folder / movie_name(format), error);
-    remove_frames(folder / "frames", 0);
-  }
-  // From here on the folder says that its movie and poster are of this scene.
-  if (state == FolderState::same_physics)
-    for (const std::string& old : {movie_name(find_movie_format(settings.movie.format)), std::string("poster.png")})
-      fs::remove(folder / old, error);
-  if (state != FolderState::same) write_whole_file(folder / "scene.toml", write_scene(settings));
+  adopt_movie(files, movie_name(find_movie_format(settings.movie.format)));
+  require_pictures(files, settings);
+  for (const render::FigureParameters& figure : settings.figures)
+    for (const std::string& name : figure_names(figure)) files.require(name);
   return state;
+}
+
+void claim_folder(OwnedFiles& files, const Settings& settings, FolderState state) {
+  if (state == FolderState::same) return;
+  const fs::path& folder = files.folder();
+  const std::string text = write_scene(settings);
+  const bool there = fs::is_regular_file(folder / scene_name) && read_whole_file(folder / scene_name) == text;
+  std::optional<sim::Draft> scene;  // on the disk before anything is removed
+  if (!there) scene.emplace(files.prepare(scene_name, text));
+  // From here on the folder says that its movie and poster are of this scene.
+  files.remove(poster_name);
+  if (state == FolderState::same_physics) {
+    files.remove(movie_name(find_movie_format(settings.movie.format)));
+  } else {
+    // No scene first, so that what a kill leaves belongs to none.
+    if (!there) files.remove(scene_name);
+    for (const MovieFormat& format : movie_formats()) files.remove(movie_name(format));
+    files.remove_frames(0);
+    std::error_code error;
+    fs::remove(folder / trajectory_name, error);
+  }
+  if (scene) files.publish(*scene, scene_name);
 }
 
 }  // namespace app

@@ -1,6 +1,7 @@
 #include "pictures.h"
 
 #include "captions.h"
+#include "printable.h"
 #include "scene_text.h"
 #include "streamlines.h"
 #include "version.h"
@@ -241,7 +242,7 @@ Production prepare_pictures(const std::vector<PictureSource>& sources) {
     render::Captions c;
     c.parameters = parameter_caption(settings.scene, area_radius, measures.reduced_volume);
     c.scale_length = area_radius;
-    if (settings.view.title || sources.size() > 1) c.title = settings.scene.title;
+    if (settings.view.title || sources.size() > 1) c.title = printable(settings.scene.title);
     captions.push_back(c);
     production.hash += fmt::format("{}-{}-", picture_hash(settings), trajectory.count());
   }

@@ -2,17 +2,18 @@
 
 #include "interrupt.h"
 #include "catalogues.h"
+#include "printable.h"
 #include "scene_overrides.h"
 #include "scene_values.h"
 
 #include "render/palette.h"
+#include "sim/input_file.h"
 #include "sim/placements.h"
 #include "sim/shapes.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
 namespace app {
 
@@ -49,9 +50,25 @@ const toml::source_region& source_of(const toml::table& table, std::string_view 
 }
 
 std::string text_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
+  std::string why;
+  std::ifstream in = sim::open_input(path, why);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read: {}", path.string(), why));
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What is no text at all is called by its name.
+void refuse_other_files(std::string_view text, const std::filesystem::path& path) {
+  struct Kind {
+    std::string_view start, what;
+  };
+  constexpr Kind kinds[] = {{"\211HDF\r\n\032\n", "a trajectory or another HDF5 file, not a scene; 'tanktread info' tells what is in it"},
+                            {"\211PNG\r\n\032\n", "a picture, not a scene"},
+                            {"\377\330\377", "a picture, not a scene"}};
+  if (text.empty()) throw std::runtime_error(fmt::format("{}: is empty", path.string()));
+  for (const Kind& kind : kinds)
+    if (text.starts_with(kind.start)) throw std::runtime_error(fmt::format("{}: is {}", path.string(), kind.what));
+  if (text.find('\0') != std::string_view::npos)
+    throw std::runtime_error(fmt::format("{}: is not a text, hence no scene", path.string()));
 }
 
 /// Is an optional, text or list member of a kind that needs it not given?
@@ -96,6 +113,8 @@ struct Reader {
     if (p.out.find('/') != std::string::npos || p.out == "." || p.out == "..")
       fail_at(source_of(table, "out"), fmt::format("'out' must be a file name without folders, not '{}'; results stay in the "
                                                    "output folder ('tanktread figure -o' writes anywhere)", p.out));
+    if (printable(p.out) != p.out)
+      fail_at(source_of(table, "out"), fmt::format("'out' must be a file name without control characters, not '{}'", p.out));
   }
   void check(const toml::table& table, sim::TimeParameters& p) const {
     for (const auto& [key, length] : {std::pair{"step", p.step}, std::pair{"save_every", p.save_every.value_or(p.step)}})
@@ -148,6 +167,24 @@ struct Reader {
                                                                v.order, n.source_order));
     if (n.repulsion_strength > 0 && !n.near_rule)
       fail_at(source_of(*table, "near_rule"), "the repulsion acts where the near rule does: it needs near_rule = true");
+  }
+
+  /// Every result has a name of its own.
+  void check_names(const Settings& settings) const {
+    const toml::node* node = root.get("figure");
+    const toml::array* tables = node ? node->as_array() : nullptr;
+    std::vector<std::string> taken;
+    for (std::size_t k = 0; k < settings.figures.size(); ++k) {
+      const render::FigureParameters& figure = settings.figures[k];
+      const toml::table* table = tables ? tables->get(k)->as_table() : node->as_table();
+      const std::string& stem = figure.out.empty() ? figure.kind : figure.out;
+      if (std::find(taken.begin(), taken.end(), stem) != taken.end())
+        fail_at(source_of(*table, figure.out.empty() ? "kind" : "out"),
+                fmt::format("two figures would be called '{}'; give one of them another 'out'", stem));
+      if (settings.movie.poster && stem == "poster")
+        fail_at(source_of(*table, "out"), "the poster of the movie is called 'poster' already; give the figure another 'out'");
+      taken.push_back(stem);
+    }
   }
 
   template <class P>
@@ -249,7 +286,10 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
                settings.scene.title);
   const Reader reader{root, name, folder, use};
   visit_sections(settings, reader);
-  if (use == SceneUse::simulate) reader.check_together(settings.scene);
+  if (use == SceneUse::simulate) {
+    reader.check_together(settings.scene);
+    reader.check_names(settings);
+  }
   if (const double part = settings.movie.time_per_frame, frames = settings.scene.time.end / part; part > 0 && frames > most_frames)
     fail_at(source_of(*root["movie"].as_table(), "time_per_frame"),
             fmt::format("{:.3g} frames are too many; 'time_per_frame' must be longer", frames));
@@ -270,7 +310,9 @@ Settings read_scene(const std::filesystem::path& path, const std::vector<std::st
   constexpr std::uintmax_t largest = 64 << 20;  // some hundred thousand vesicles
   if (std::filesystem::file_size(path, error) > largest && !error)
     throw std::runtime_error(fmt::format("{}: is too large for a scene", path.string()));
-  return parse_scene(text_of(path), path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides);
+  const std::string text = text_of(path);
+  refuse_other_files(text, path);
+  return parse_scene(text, path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides);
 }
 
 }  // namespace app

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace app {
 
@@ -23,6 +25,10 @@ std::string toml_value(const std::string& value) {
     else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) text += fmt::format("\\u{:04x}", c);
     else text += c;
   }
+  // The control characters beyond ASCII, which terminals obey as well.
+  for (std::size_t at = 0; (at = text.find('\xc2', at)) != std::string::npos; ++at)
+    if (const auto next = at + 1 < text.size() ? static_cast<unsigned char>(text[at + 1]) : 0; next >= 0x80 && next < 0xa0)
+      text.replace(at, 2, fmt::format("\\u{:04x}", next));
   return text + '"';
 }
 std::string toml_value(const std::array<double, 3>& value) {
@@ -75,6 +81,43 @@ struct Writer {
   }
 };
 
+/// Keys and values of a scene, as write_scene() writes them; tables of a list carry their numbers.
+struct Flattener {
+  std::vector<std::pair<std::string, std::string>> lines;
+
+  template <class P>
+  void table(const std::string& name, const sim::Section& section, const P& parameters) {
+    Writer writer;
+    writer.table(section, parameters);
+    std::string_view text = writer.text;
+    while (!text.empty()) {
+      std::string_view line = text.substr(0, text.find('\n'));
+      text.remove_prefix(line.size() + 1);
+      const bool absent = line.starts_with("# ");
+      if (absent) line.remove_prefix(2);
+      const std::string_view between = absent ? ": " : " = ";
+      const std::size_t at = line.find(between);
+      lines.emplace_back(fmt::format("{}.{}", name, line.substr(0, at)), absent ? "none" : line.substr(at + between.size()));
+    }
+  }
+  template <class P>
+  void operator()(const sim::Section& section, const P& parameters) {
+    table(std::string(section.name), section, parameters);
+  }
+  template <class P>
+  void operator()(const sim::Section& section, const std::vector<P>& list) {
+    for (std::size_t k = 0; k < list.size(); ++k) table(fmt::format("{}.{}", section.name, k), section, list[k]);
+  }
+};
+
+/// What does not count for the physics has the same value everywhere.
+sim::Scene bare(sim::Scene scene) {
+  scene.title.clear();
+  for (sim::VesicleParameters& v : scene.vesicles) v.file.clear();  // its checksum counts, not where it lies
+  scene.numerics.threads = 0;
+  return scene;
+}
+
 }  // namespace
 
 std::string write_scene(const Settings& settings) {
@@ -90,11 +133,53 @@ std::string write_scene(const sim::Scene& scene) {
 }
 
 std::string physics_hash(const sim::Scene& scene) {
-  sim::Scene same = scene;
-  same.title.clear();
-  for (sim::VesicleParameters& v : same.vesicles) v.file.clear();  // its checksum counts, not where it lies
-  same.numerics.threads = 0;
-  return checksum(write_scene(same));
+  return checksum(write_scene(bare(scene)));
+}
+
+std::vector<SceneDifference> physics_differences(const sim::Scene& first, const sim::Scene& second) {
+  Flattener a, b;
+  const sim::Scene one = bare(first), two = bare(second);
+  sim::visit_sections(one, a);
+  sim::visit_sections(two, b);
+  std::vector<SceneDifference> all;
+  if (a.lines == b.lines) return all;
+  const std::map<std::string, std::string> there(a.lines.begin(), a.lines.end()), here(b.lines.begin(), b.lines.end());
+  const auto value = [](const auto& values, const std::string& key) {
+    const auto entry = values.find(key);
+    return entry == values.end() ? std::string("none") : entry->second;
+  };
+  for (const auto& [key, text] : a.lines)
+    if (const std::string other = value(here, key); other != text) all.push_back({key, text, other});
+  for (const auto& [key, text] : b.lines)
+    if (text != "none" && !there.contains(key)) all.push_back({key, "none", text});
+  // A list of one needs no number.
+  for (SceneDifference& d : all)
+    if (const std::size_t at = d.key.find(".0."); at != std::string::npos) {
+      const std::string next = d.key.substr(0, at) + ".1.";
+      const auto several = [&](const auto& values) {
+        const auto entry = values.lower_bound(next);
+        return entry != values.end() && entry->first.starts_with(next);
+      };
+      if (!several(there) && !several(here)) d.key.erase(at, 2);
+    }
+  return all;
+}
+
+bool continuable(const std::vector<SceneDifference>& differences) {
+  return std::all_of(differences.begin(), differences.end(), [](const SceneDifference& d) {
+    return d.key == "time.end" || d.key == "time.save_every";
+  });
+}
+
+std::string text_of(const std::vector<SceneDifference>& differences) {
+  constexpr std::size_t most = 5;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, differences.size()); ++k) {
+    const SceneDifference& d = differences[k];
+    text += fmt::format("{}{} is {} there and {} here", text.empty() ? "" : ", ", d.key, d.first, d.second);
+  }
+  if (differences.size() > most) text += fmt::format(", and {} more keys", differences.size() - most);
+  return text;
 }
 
 std::string picture_hash(const Settings& settings) {

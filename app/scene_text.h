@@ -13,6 +13,17 @@ std::string write_scene(const sim::Scene&);
 std::string physics_hash(const sim::Scene&);
 std::string picture_hash(const Settings&);
 
+/// One key whose value is not the same in two scenes; "none" stands for a value that is not there.
+struct SceneDifference {
+  std::string key, first, second;
+};
+/// Those of the physics; empty when physics_hash() is the same.
+std::vector<SceneDifference> physics_differences(const sim::Scene& first, const sim::Scene& second);
+/// May a simulation of the one go on as the other: do they differ in time.end and time.save_every only?
+bool continuable(const std::vector<SceneDifference>&);
+/// "time.step is 0.1 there and 0.2 here; ...", some of them.
+std::string text_of(const std::vector<SceneDifference>&);
+
 /// A value in TOML, shortest digits that give the same number.
 std::string toml_value(bool), toml_value(int), toml_value(double), toml_value(const std::string&);
 std::string toml_value(const sim::Vec3&), toml_value(const std::array<double, 3>&);

@@ -1,6 +1,7 @@
 #include "summary.h"
 
 #include "frames.h"
+#include "printable.h"
 #include "scene_text.h"
 
 #include "render/image.h"
@@ -50,6 +51,17 @@ std::vector<Extreme> extremes(const std::vector<sim::StepRecord>& steps) {
   return all;
 }
 
+/// Line by line.
+std::string printable_lines(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    result += printable(line) + "\n";
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string scene_summary(const Settings& settings) {
@@ -60,7 +72,7 @@ std::string scene_summary(const Settings& settings) {
   const std::int64_t states = intervals(scene.time.end, every) + 1;
   const std::int64_t frames =
       settings.movie.time_per_frame > 0 ? frame_count(scene.time.end, settings.movie.time_per_frame) : states;
-  std::string text = fmt::format("# {}\n", scene.title.empty() ? "(no title)" : scene.title);
+  std::string text = fmt::format("# {}\n", scene.title.empty() ? "(no title)" : printable(scene.title));
   text += fmt::format("# flow {}; time 0 to {}, about {}, {}\n", flows, scene.time.end,
                       counted(intervals(scene.time.end, std::min(every, scene.time.step)), "step"),
                       counted(states, "saved state"));
@@ -78,8 +90,8 @@ std::string trajectory_summary(const std::filesystem::path& path) {
   const sim::TrajectoryHeader& header = trajectory.header();
   const sim::TrajectoryLayout& layout = trajectory.layout();
   const std::int64_t states = trajectory.count();
-  std::string text = fmt::format("file       {}, a trajectory, format {}\n", path.string(), sim::trajectory_format);
-  text += fmt::format("program    tanktread {}, {}\n", header.program, header.build);
+  std::string text = fmt::format("file       {}, a trajectory, format {}\n", printable(path.string()), sim::trajectory_format);
+  text += fmt::format("program    tanktread {}, {}\n", printable(header.program), printable(header.build));
   text += fmt::format("vesicles   {}, order at most {}, labels at most {}\n", layout.vesicles, layout.order,
                       layout.label_order);
   text += fmt::format("states     {}, time {} to {}\n", states, states > 0 ? trajectory.time(0) : 0,
@@ -90,16 +102,16 @@ std::string trajectory_summary(const std::filesystem::path& path) {
     text += "largest over all steps and vesicles:\n";
     for (const Extreme& e : extremes(steps)) text += fmt::format("  {:<14} {:.6g}\n", e.name, e.value);
   }
-  for (const std::string& warning : header.warnings) text += fmt::format("warning    {}\n", warning);
-  for (const std::string& note : trajectory.notes()) text += fmt::format("note       {}\n", note);
+  for (const std::string& warning : header.warnings) text += fmt::format("warning    {}\n", printable(warning));
+  for (const std::string& note : trajectory.notes()) text += fmt::format("note       {}\n", printable(note));
   for (const std::int64_t k : trajectory.damaged()) text += fmt::format("damaged    state {}\n", k);
-  return text + "\n" + header.scene;
+  return text + "\n" + printable_lines(header.scene);
 }
 
 std::string picture_summary(const std::filesystem::path& path) {
   const render::PngFile file = render::read_png(path);
-  std::string text = fmt::format("file       {}, a picture, {} x {}\n", path.string(), file.image.width, file.image.height);
-  for (const auto& [key, value] : file.text) text += fmt::format("{:<10} {}\n", key, value);
+  std::string text = fmt::format("file       {}, a picture, {} x {}\n", printable(path.string()), file.image.width, file.image.height);
+  for (const auto& [key, value] : file.text) text += fmt::format("{:<10} {}\n", printable(key), printable(value));
   return text;
 }
 

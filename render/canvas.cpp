@@ -1,6 +1,5 @@
 #include "canvas.h"
 
-#include "file.h"
 #include "image.h"
 
 #include <cairo-pdf.h>
@@ -68,7 +67,8 @@ std::string renumbered(const std::string& svg) {
 
 }  // namespace
 
-void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text) {
+void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text,
+                       const sim::FileWriter& write) {
   const double scale = drawing.dots_per_inch / 72;
   const int width = static_cast<int>(std::lround(drawing.width * scale));
   const int height = static_cast<int>(std::lround(drawing.height * scale));
@@ -88,10 +88,10 @@ void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing
       p[1] = static_cast<std::uint8_t>(v >> 8);
       p[2] = static_cast<std::uint8_t>(v);
     }
-  write_png(path, image, text);
+  write_png(path, image, text, 6, write);
 }
 
-void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing) {
+void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write) {
   std::string text;
   {
     const Surface surface(cairo_svg_surface_create_for_stream(append, &text, drawing.width, drawing.height));
@@ -100,10 +100,10 @@ void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()), path);
   }
-  write_file(path, renumbered(text));
+  write(path, renumbered(text));
 }
 
-void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing) {
+void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write) {
   std::string text;
   {
     const Surface surface(cairo_pdf_surface_create_for_stream(append, &text, drawing.width, drawing.height));
@@ -114,7 +114,7 @@ void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()), path);
   }
-  write_file(path, text);
+  write(path, text);
 }
 
 }  // namespace render

@@ -19,10 +19,11 @@ struct Drawing {
   double dots_per_inch = 200;  ///< of the PNG
 };
 
-/// Each is written by write_file(); throws std::runtime_error with path and reason.
+/// Each throws std::runtime_error with path and reason.
 /// The same drawing gives the same bytes: no dates, no names of machines, text as paths.
-void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text = {});
-void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing);
-void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing);
+void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text = {},
+                       const sim::FileWriter& write = sim::write_file);
+void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write = sim::write_file);
+void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write = sim::write_file);
 
 }  // namespace render

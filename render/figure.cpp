@@ -1,7 +1,6 @@
 #include "figure.h"
 
 #include "figure_kinds.h"
-#include "file.h"
 
 #include <fmt/format.h>
 
@@ -121,13 +120,13 @@ std::string csv_cell(const std::string& text) {
 }
 
 std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem,
-                                                const PngText& text) {
-  const auto with = [&](const char* extension) { return std::filesystem::path(stem.string() + extension); };
-  const std::vector<std::filesystem::path> paths{with(".png"), with(".svg"), with(".pdf"), with(".csv")};
-  write_drawing_png(paths[0], figure.drawing, text);
-  write_drawing_svg(paths[1], figure.drawing);
-  write_drawing_pdf(paths[2], figure.drawing);
-  write_file(paths[3], figure.csv);
+                                                const PngText& text, const sim::FileWriter& write) {
+  std::vector<std::filesystem::path> paths;
+  for (const char* extension : figure_extensions) paths.emplace_back(stem.string() + extension);
+  write_drawing_png(paths[0], figure.drawing, text, write);
+  write_drawing_svg(paths[1], figure.drawing, write);
+  write_drawing_pdf(paths[2], figure.drawing, write);
+  write(paths[3], figure.csv);
   return paths;
 }
 

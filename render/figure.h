@@ -121,8 +121,10 @@ Sheet sheet_layout(const FigureInput& input);
 /// A text that may hold commas or quotes as one cell of a CSV.
 std::string csv_cell(const std::string& text);
 
+inline constexpr const char* figure_extensions[] = {".png", ".svg", ".pdf", ".csv"};
 /// stem.png, stem.svg, stem.pdf, stem.csv; returns the four paths. `text` goes into the PNG. Throws std::runtime_error with path
 /// and reason.
-std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem, const PngText& text = {});
+std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem, const PngText& text = {},
+                                               const sim::FileWriter& write = sim::write_file);
 
 }  // namespace render

@@ -1,6 +1,8 @@
 // A picture in memory: 8-bit sRGB samples, and its way to and from PNG files.
 #pragma once
 
+#include "sim/result_file.h"
+
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -42,9 +44,10 @@ Image downsample(const Image& source, int factor, RowOrder rows = RowOrder::top_
 /// Key and text of the text chunks of a PNG file; keys 1-79 Latin characters, text UTF-8.
 using PngText = std::vector<std::pair<std::string, std::string>>;
 
-/// Written by write_file(); throws std::runtime_error with path and reason.
+/// Throws std::runtime_error with path and reason.
 /// compression: zlib level 0-9; no PNG filter, which suits flat, smooth pictures best.
-void write_png(const std::filesystem::path& path, const Image& image, const PngText& text = {}, int compression = 6);
+void write_png(const std::filesystem::path& path, const Image& image, const PngText& text = {}, int compression = 6,
+               const sim::FileWriter& write = sim::write_file);
 
 /// The bytes of such a file.
 std::string png_bytes(const Image& image, const PngText& text = {}, int compression = 6);

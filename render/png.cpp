@@ -1,6 +1,5 @@
 #include "image.h"
 
-#include "file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -267,14 +266,15 @@ std::string png_bytes(const Image& image, const PngText& text, int compression) 
   return result;
 }
 
-void write_png(const std::filesystem::path& path, const Image& image, const PngText& text, int compression) {
+void write_png(const std::filesystem::path& path, const Image& image, const PngText& text, int compression,
+               const sim::FileWriter& write) {
   std::string bytes;
   try {
     bytes = png_bytes(image, text, compression);
   } catch (const std::runtime_error& error) {
     fail(path, std::string("cannot be written: ") + error.what());
   }
-  write_file(path, bytes);
+  write(path, bytes);
 }
 
 PngFile read_png(std::FILE* file, const std::filesystem::path& path, const std::function<void()>& look) {

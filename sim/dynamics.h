@@ -4,6 +4,7 @@
 
 #include "labels.h"
 #include "membrane.h"
+#include "trajectory.h"
 
 #include <span>
 
@@ -27,6 +28,7 @@ struct VesicleDynamics {
   double high_share = 0;        ///< high-degree share of x after the last relabelling, the least since
   std::int64_t relabelled = 0, labels_laid = 0;
   double labels_laid_time = 0;
+  bool warned = false;          ///< its order does not resolve it, which has been said: once a vesicle and run
 };
 
 struct Dynamics {
@@ -41,7 +43,8 @@ struct Dynamics {
 };
 
 std::vector<double> serialised(const Dynamics&);
-/// The inverse; throws std::runtime_error when the numbers are not a whole state.
-Dynamics deserialised(std::span<const double>);
+/// The inverse; throws std::runtime_error unless the numbers are the whole state of a run that a trajectory of this layout
+/// holds: counts, orders and sizes fit together and within the layout, all numbers are finite, none is left over.
+Dynamics deserialised(std::span<const double>, const TrajectoryLayout&);
 
 }  // namespace sim

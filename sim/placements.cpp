@@ -1,12 +1,12 @@
 #include "placements.h"
 
 #include "geometry.h"
+#include "input_file.h"
 #include "shapes.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -149,8 +149,9 @@ std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleP
 }
 
 std::vector<VesicleParameters> from_file(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion&) {
-  std::ifstream in(p.file);
-  if (!in) throw std::invalid_argument(fmt::format("cannot read the table of centres '{}'", p.file));
+  std::string why;
+  std::ifstream in = open_input(p.file, why);
+  if (!in) throw std::invalid_argument(fmt::format("cannot read the table of centres '{}': {}", p.file, why));
   std::vector<VesicleParameters> all;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {

@@ -1,11 +1,11 @@
 #include "shapes.h"
 
 #include "geometry.h"
+#include "input_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <numbers>
 #include <sstream>
@@ -113,8 +113,9 @@ Coefficients harmonics(const VesicleParameters& v) {
 
 /// Text table: "coefficients" and rows n m x y z, or "grid q" and (q+1)(2q+2) rows x y z, latitude fastest.
 Coefficients from_file(const VesicleParameters& v) {
-  std::ifstream in(v.file);
-  if (!in) throw std::invalid_argument(fmt::format("cannot read shape file '{}'", v.file));
+  std::string why;
+  std::ifstream in = open_input(v.file, why);
+  if (!in) throw std::invalid_argument(fmt::format("cannot read shape file '{}': {}", v.file, why));
   std::string line, kind;
   int number = 0, grid_order = 0;
   std::vector<std::array<double, 5>> rows;

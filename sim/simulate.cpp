@@ -13,11 +13,12 @@ namespace {
 
 constexpr double same_time = 1e-9;  ///< times nearer than this share of a step are one time
 
-/// Time of the k-th saved state: multiples of save_every, and the end.
+/// Time of the next saved state: multiples of save_every, and the end. Not counted from the last one, which may have been
+/// the end of a run that is continued, or saved by another measure.
 double save_time(const Scene& scene, const Dynamics& d) {
   if (!scene.time.save_every) return scene.time.end;
-  const double next = double(d.saves) * *scene.time.save_every;
-  return std::min(next, scene.time.end);
+  const double every = *scene.time.save_every;
+  return std::min((std::floor(d.time / every + same_time) + 1) * every, scene.time.end);
 }
 
 /// The step that reaches `target` in equal steps no longer than the present limit.
@@ -69,6 +70,40 @@ TrajectoryLayout layout_for(const Scene& scene, const Dynamics& d) {
   return layout;
 }
 
+/// Of a TrajectoryReader or TrajectoryWriter.
+template <class File>
+struct ResumeRecord {
+  const File& file;
+  const std::filesystem::path& path;
+
+  [[noreturn]] void refuse(std::string_view why) const {
+    throw std::runtime_error(fmt::format("trajectory '{}' of version {} cannot be resumed: its resume record is damaged, or "
+                                         "of another version ({})", path.string(), file.header().program, why));
+  }
+  Dynamics read() const {
+    try {
+      return deserialised(file.resume_payload(), file.layout());
+    } catch (const std::runtime_error& error) {
+      refuse(error.what());
+    }
+  }
+};
+
+/// The record against the rest of the file and the scene.
+Dynamics resumed(const TrajectoryWriter& file, const Scene& scene, const std::filesystem::path& path) {
+  const ResumeRecord record{file, path};
+  Dynamics d = record.read();
+  if (d.vesicles.size() != scene.vesicles.size())
+    record.refuse(fmt::format("{} vesicles, the scene has {}", d.vesicles.size(), scene.vesicles.size()));
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k)
+    if (d.vesicles[k].position.order != scene.vesicles[k].order) record.refuse("an order is not that of the scene");
+  if (!file.holds(d.step, d.time, d.saves)) record.refuse("it does not belong to the states of the file");
+  if (d.dt_limit < std::ldexp(scene.time.step, -scene.numerics.step_retries) * (1 - same_time) ||
+      d.dt_limit > scene.time.step * (1 + same_time))
+    record.refuse("the scene allows no such step");
+  return d;
+}
+
 /// Renews the resume point after every step, but not more than 20 times a second.
 class ResumeClock {
  public:
@@ -95,17 +130,20 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
   std::optional<TrajectoryWriter> file;
   if (options.resume) {
     file.emplace(TrajectoryWriter::resume(options.trajectory));
-    d = deserialised(file->resume_payload());
+    d = resumed(*file, scene, options.trajectory);
+    if (observer.on_ready) observer.on_ready();
+    if (options.another_time && d.time < scene.time.end) file->continue_as(options.scene_text, layout_for(scene, d));
   } else {
     d = initial_dynamics(setting);
     const TrajectoryHeader header{options.scene_text, options.program, options.build, scene_warnings(setting, d)};
     if (observer.on_warning)
       for (const std::string& warning : header.warnings) observer.on_warning(warning);
+    for (VesicleDynamics& v : d.vesicles) v.warned = v.tail > scene.numerics.tail_warning;
     const State first = evaluate(setting, d);
     expect(d, first);
     const TrajectoryLayout layout = layout_for(scene, d);
     mark_saved(d, first);
-    file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d)));
+    file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d), observer.on_ready));
     if (observer.on_state) observer.on_state(first);
   }
 
@@ -126,8 +164,6 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
   };
   SimulationOutcome outcome;
   const std::int64_t first_step = d.step;
-  std::vector<bool> warned;  // one warning a vesicle and run: a shape may cross the bound often
-  for (const VesicleDynamics& v : d.vesicles) warned.push_back(v.tail > scene.numerics.tail_warning);
   while (d.time < scene.time.end * (1 - 1e-12)) {
     if (options.steps >= 0 && d.step - first_step >= options.steps) {
       outcome.end = SimulationEnd::step_limit;
@@ -148,9 +184,9 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
       file->note("stopped at " + outcome.reason);
       break;
     }
-    for (std::size_t k = 0; k < warned.size(); ++k)
-      if (!warned[k] && d.vesicles[k].tail > scene.numerics.tail_warning) {
-        warned[k] = true;
+    for (std::size_t k = 0; k < d.vesicles.size(); ++k)  // one warning a vesicle and run: a shape may cross the bound often
+      if (VesicleDynamics& v = d.vesicles[k]; !v.warned && v.tail > scene.numerics.tail_warning) {
+        v.warned = true;
         warn(fmt::format("t = {:.6g}: {}", d.time, resolution_warning(setting, d, k)));
       }
     if (clock.due()) {
@@ -173,6 +209,10 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
   outcome.step = d.step;
   outcome.time = d.time;
   return outcome;
+}
+
+Dynamics resume_point(const TrajectoryReader& file, const std::filesystem::path& path) {
+  return ResumeRecord{file, path}.read();
 }
 
 Preview preview(const Scene& scene) {

@@ -11,6 +11,7 @@ namespace sim {
 struct SimulationOptions {
   std::filesystem::path trajectory;   ///< the file to write
   bool resume = false;                ///< continue it
+  bool another_time = false;          ///< ... to another end or with other saved times than the file says: it gets this scene
   std::int64_t steps = -1;            ///< at most so many steps in this call; -1: to the end; 0: the initial state only
   std::string scene_text;             ///< resolved scene, kept in the file
   std::string program, build;         ///< version and compiler, kept in the file
@@ -19,6 +20,7 @@ struct SimulationOptions {
 /// Called from the thread that simulates.
 struct SimulationObserver {
   std::function<void(const Dynamics&, const StepRecord&)> on_step;
+  std::function<void()> on_ready;     ///< once, before the file appears or changes: the scene can be simulated
   std::function<void(const State&)> on_state;
   std::function<void(const std::string&)> on_warning;
   std::function<bool()> should_stop;  ///< asked after every step
@@ -40,6 +42,10 @@ struct SimulationOutcome {
 
 /// Throws std::invalid_argument for scenes that cannot be started, std::runtime_error for file errors.
 SimulationOutcome simulate(const Scene&, const SimulationOptions&, const SimulationObserver&);
+
+/// Where a trajectory goes on: its resume record, as strictly checked as its states. Throws std::runtime_error that names
+/// the file.
+Dynamics resume_point(const TrajectoryReader&, const std::filesystem::path&);
 
 /// Everything known of a scene without running it: the initial state and its warnings.
 struct Preview {

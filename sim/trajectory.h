@@ -1,6 +1,6 @@
 // The trajectory file: one HDF5 file that is readable at every instant and survives a kill at any.
 //
-// All HDF5 metadata is written once, at creation, in NAME.tmp, which takes its name when header and state 0 are
+// All HDF5 metadata is written once, at creation, in a draft, which takes its name when header and state 0 are
 // complete. Afterwards rows are written with pwrite at the offsets HDF5 gave, and an 8-byte counter, written last,
 // commits them. A state that append() has returned from is in the file, whatever happens next. See docs/trajectory.md.
 #pragma once
@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,9 @@ namespace sim {
 
 /// Version of the file layout; readers accept this one only.
 inline constexpr int trajectory_format = 1;
+
+/// Highest order of any field or label in a file.
+inline constexpr int largest_order = 128;
 
 /// Sizes that are fixed for one file. States, steps and resume grow by themselves when they are exceeded.
 struct TrajectoryLayout {
@@ -76,12 +80,18 @@ void visit(R& r, V&& v) {
   v("relabelled", "1 when this step moved the grid points along the membrane", r.relabelled);
 }
 
-/// Writes one trajectory; holds NAME.lock, so that a second writer is refused.
+/// Is this file a trajectory of this program, damaged or not? False also where nothing is, or nothing that can be read.
+bool holds_trajectory(const std::filesystem::path&);
+
+/// Writes one trajectory and holds a lock on the file, so that a second writer is refused by whatever name.
 class TrajectoryWriter {
  public:
-  /// A new file with its first state; an existing file is replaced. Errors are std::runtime_error with one sentence.
+  /// A new file with its first state; an existing trajectory is replaced, a link is written through, anything else is left as
+  /// it is. `ready` is called when nothing but the name is missing; what it throws ends the creation. Errors are
+  /// std::runtime_error with one sentence.
   static TrajectoryWriter create(const std::filesystem::path&, const TrajectoryLayout&, const TrajectoryHeader&,
-                                 const State& first, std::span<const double> resume_payload);
+                                 const State& first, std::span<const double> resume_payload,
+                                 const std::function<void()>& ready = {});
   /// Continues an existing file after its last state.
   static TrajectoryWriter resume(const std::filesystem::path&);
 
@@ -96,6 +106,11 @@ class TrajectoryWriter {
 
   /// The newest intact payload of write_resume(), as it was given.
   std::vector<double> resume_payload() const;
+
+  /// Does the file hold what a run had written after `step` steps, when it was at `time` and had saved `saves` states?
+  bool holds(std::int64_t step, double time, std::int64_t saves) const;
+  /// Another scene from now on, with room for at least so many rows: the file is written anew and then replaced at once.
+  void continue_as(std::string_view scene, const TrajectoryLayout& room);
 
   /// Appends records, then the state, and returns when both are committed. After a resume the steps between the resume
   /// payload and the end of the file come a second time: states and records not newer than the file's last are left out.
@@ -133,6 +148,8 @@ class TrajectoryReader {
   std::vector<StepRecord> steps() const;
   std::vector<std::string> notes() const;
   std::vector<double> resume_payload() const;
+  /// Was the last thing written finish_resume() after so many steps, and is it whole?
+  bool finished_after(std::int64_t step) const;
   /// States whose checksum does not fit.
   std::vector<std::int64_t> damaged() const;
 

@@ -2,9 +2,11 @@
 // Internal to the trajectory.
 #pragma once
 
+#include "result_file.h"
 #include "trajectory_rows.h"
 
 #include <map>
+#include <optional>
 
 namespace sim::file {
 
@@ -24,15 +26,14 @@ struct Map {
 
 inline constexpr std::uint64_t note_bytes = 256, note_rows = 64;
 
-/// Writes an empty file of that layout: header, all datasets allocated (sparse) and zero. Not synced, not renamed.
-void create(const std::filesystem::path&, const TrajectoryLayout&, const TrajectoryHeader&);
-/// Opens read-only, without locking, checks format, names, types and extents, and closes again.
-Map map(const std::filesystem::path&);
+/// Makes of a draft an empty file of that layout: header, all datasets allocated (sparse) and zero. Errors name `path`, which
+/// the file will have.
+void create(const Draft&, const std::filesystem::path& path, const TrajectoryLayout&, const TrajectoryHeader&);
 
-/// An open file descriptor whose transfers are complete or an exception with a sentence.
+/// An open file descriptor whose transfers are complete or an exception with a sentence. Only regular files are opened:
+/// a named pipe may keep its reader for ever, and opening a device may do something.
 class Descriptor {
  public:
-  Descriptor() = default;
   Descriptor(const std::filesystem::path&, bool writable);
   Descriptor(Descriptor&&) noexcept;
   Descriptor& operator=(Descriptor&&) noexcept;
@@ -42,28 +43,43 @@ class Descriptor {
   void read(std::uint64_t offset, void* bytes, std::uint64_t size) const;
   void sync(bool data_only) const;
   std::uint64_t inode() const;
+  std::uint64_t size() const;
+  /// Is this descriptor of the same file?
+  bool same_file(int descriptor) const;
+  const std::filesystem::path& path() const { return path_; }
+  void renamed(const std::filesystem::path& path) { path_ = path; }  ///< the file, by somebody
 
  private:
   std::filesystem::path path_;
   int fd_ = -1;
 };
 
-/// The right to write PATH: a lock on PATH.lock, given back by the kernel even after kill -9.
+/// Has HDF5 open the file of the descriptor read-only, without locking, checks format, names, types and extents, and closes
+/// it again. Nothing when another file has taken the name since.
+std::optional<Map> map(const Descriptor&);
+
+/// The right to write a trajectory: a lock on the file itself, whatever name it was opened by.
 class Lock {
  public:
+  /// Throws a sentence when another process has it.
   explicit Lock(const std::filesystem::path&);
+  /// Of a draft that has been published.
+  explicit Lock(Draft&& draft) : fd_(draft.release()) {}
   Lock(Lock&&) noexcept;
   Lock& operator=(Lock&&) noexcept;
   ~Lock();
 
  private:
-  std::filesystem::path path_;
   int fd_ = -1;
 };
 
-/// Name under which a file is prepared.
-std::filesystem::path temporary(const std::filesystem::path&);
-/// The prepared file takes its name, durably.
-void publish(const std::filesystem::path&);
+/// May a new trajectory take the place of what has this name? A file that is neither a trajectory of ours, damaged or not, nor
+/// empty throws a sentence, and so does what is no file.
+void require_ours(const std::filesystem::path&);
+bool holds_mark(const std::filesystem::path&);
+
+/// Draft's steps with sentences of their own.
+Draft draft(const std::filesystem::path&);
+void publish(Draft&, const std::filesystem::path&, bool fresh);
 
 }  // namespace sim::file

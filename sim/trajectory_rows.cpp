@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <cmath>
 #include <stdexcept>
 
 namespace sim::rows {
@@ -99,6 +100,8 @@ struct Pack {
   }
 };
 
+constexpr double largest_number = 1e150;  // the square of every number is one, too
+
 struct Unpack {
   const Words& words;
   const TrajectoryLayout& layout;
@@ -111,33 +114,51 @@ struct Unpack {
     if constexpr (std::is_same_v<T, State>) get(state.*member);
     else for (VesicleState& v : state.vesicles) get(v.*member);
   }
-  template <class T> void integer(const char*, const char*, std::int64_t T::*member) { each(member); }
-  template <class T> void real(const char*, const char*, double T::*member) { each(member); }
+  void require(bool fits, const char* name, const auto& value) const {
+    if (!fits) throw Unfit(fmt::format("{} is {}", name, value));
+  }
+  void real(const char* name, double& value) {
+    get(value);
+    require(std::abs(value) <= largest_number, name, value);
+  }
+  /// Counts and times are never negative.
+  template <class T> void integer(const char* name, const char*, std::int64_t T::*member) {
+    each(member);
+    const auto check = [&](const T& t) { require(t.*member >= 0, name, t.*member); };
+    if constexpr (std::is_same_v<T, State>) check(state);
+    else for (const VesicleState& v : state.vesicles) check(v);
+  }
+  template <class T> void real(const char* name, const char*, double T::*member) {
+    each(member);
+    const auto check = [&](const T& t) { require(t.*member >= 0 && t.*member <= largest_number, name, t.*member); };
+    if constexpr (std::is_same_v<T, State>) check(state);
+    else for (const VesicleState& v : state.vesicles) check(v);
+  }
   void order(const char* name, const char*, Coefficients VesicleState::*member) {
+    const int largest = member == &VesicleState::labels ? layout.label_order : layout.order;
     for (VesicleState& v : state.vesicles) {
       std::int64_t order = 0;
       get(order);
-      if (order < 0 || order > std::max(layout.order, layout.label_order))
-        throw std::runtime_error(fmt::format("{} is {}", name, order));
+      require(order >= 0 && order <= largest, name, order);
       (v.*member).order = static_cast<int>(order);
     }
   }
-  void points(const char*, const char*, Matrix VesicleState::*member) {
+  void points(const char* name, const char*, Matrix VesicleState::*member) {
     for (VesicleState& v : state.vesicles) {
       Matrix& m = v.*member;
       m.resize(layout.tracers, 3);
       for (Eigen::Index i = 0; i < m.rows(); ++i)
-        for (Eigen::Index j = 0; j < 3; ++j) get(m(i, j));
+        for (Eigen::Index j = 0; j < 3; ++j) real(name, m(i, j));
     }
   }
-  void field(const char*, const char*, int fields, bool label, Coefficients VesicleState::*member) {
+  void field(const char* name, const char*, int fields, bool label, Coefficients VesicleState::*member) {
     const int capacity = label ? layout.label_order : layout.order;
     for (VesicleState& v : state.vesicles) {
       Coefficients& c = v.*member;
       c.order = label ? v.labels.order : v.position.order;
       c.values.resize(coefficient_count(c.order), fields);
       for (Eigen::Index f = 0; f < fields; ++f) {
-        for (Eigen::Index i = 0; i < c.values.rows(); ++i) get(c.values(i, f));
+        for (Eigen::Index i = 0; i < c.values.rows(); ++i) real(name, c.values(i, f));
         next += static_cast<std::size_t>(coefficient_count(capacity) - c.values.rows());
       }
     }

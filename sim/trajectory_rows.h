@@ -5,6 +5,7 @@
 #include "trajectory.h"
 
 #include <bit>
+#include <stdexcept>
 
 namespace sim::rows {
 
@@ -19,12 +20,18 @@ struct Column {
 /// Numbers in one row of a column.
 std::uint64_t width(const Column&);
 
+/// Numbers that are no row of such a trajectory; the words say what is wrong.
+struct Unfit : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// The bits of a whole row, one column behind the other.
 using Words = std::vector<std::uint64_t>;
 
 std::vector<Column> state_columns(const TrajectoryLayout&);
 /// A state must fit the layout: vesicles, orders, tracers; otherwise std::runtime_error.
 Words pack(const State&, const TrajectoryLayout&);
+/// Throws Unfit for orders beyond the layout, negative counts and numbers that are none.
 State unpack_state(const Words&, const TrajectoryLayout&);
 
 std::vector<Column> step_columns(const TrajectoryLayout&);

@@ -147,6 +147,97 @@ TEST_CASE("simulate refuses an existing file, continues it, and says when it is 
   CHECK(desk.names() == std::set<std::string>{"t.h5", "whole.h5"});
 }
 
+TEST_CASE("a finished simulation goes on to a later end, and is then the one that went there at once", "[commands]") {
+  std::string text = scene;
+  // The steps do not depend on the end then: it is a saved time without rounding.
+  text.replace(text.find("end = 0.5\nstep = 0.1"), 20, "end = 0.625\nstep = 0.125\nsave_every = 0.125");
+  const Desk desk(text);
+  const std::string file = desk.file("t.h5");
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("whole.h5"), "-q"}).status == 0);
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", file, "--set", "time.end=0.375", "-q"}).status == 0);
+  REQUIRE(sim::TrajectoryReader(file).count() == 4);
+  const Outcome on = desk({"simulate", desk.file("s.toml"), "-o", file, "--resume"});
+  CHECK(on.status == 0);
+  CHECK_THAT(on.out, Contains("6 states, to time 0.625"));
+  const bool same = support::read_file(file) == support::read_file(desk / "whole.h5");
+  CHECK(same);
+  // A shorter one is not gone back to.
+  const Outcome back = desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "--set", "time.end=0.4"});
+  CHECK(back.status == 1);
+  CHECK_THAT(back.err, Contains("beyond time.end = 0.4") && Contains("--force"));
+}
+
+TEST_CASE("a continued simulation saves at the multiples of save_every that it is given", "[commands]") {
+  const Desk desk;
+  const std::string file = desk.file("t.h5");
+  const auto simulate = [&](const char* end, const char* every) {
+    const Outcome outcome = desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "-q", "--set", "vesicle.order=4",
+                                  "--set", std::string("time.end=") + end, "--set", std::string("time.save_every=") + every});
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+  };
+  simulate("0.5", "0.2");
+  simulate("0.9", "0.2");   // 0.5 was the end, no multiple
+  simulate("1.5", "0.3");
+  const sim::TrajectoryReader reader(file);
+  const double times[] = {0, 0.2, 0.4, 0.5, 0.6, 0.8, 0.9, 1.2, 1.5};
+  REQUIRE(reader.count() == 9);
+  for (int k = 0; k < 9; ++k) CHECK(reader.time(k) == Approx(times[k]).epsilon(1e-14));
+  CHECK(reader.damaged().empty());
+  CHECK_THAT(reader.header().scene, Contains("end = 1.5") && Contains("save_every = 0.3"));
+  CHECK(reader.steps().size() == 15);
+}
+
+TEST_CASE("run goes on to a later end in the same folder", "[commands]") {
+  const Desk desk;
+  const auto run = [&](const char* end) {
+    return desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "--set", std::string("time.end=") + end});
+  };
+  REQUIRE(run("0.2").status == 0);
+  const Outcome longer = run("0.4");
+  INFO(longer.err);
+  CHECK(longer.status == 0);
+  CHECK(sim::TrajectoryReader(desk.file("out/trajectory.h5")).count() == 5);
+  CHECK(fs::exists(desk / "out/frames/000004.png"));
+  CHECK_THAT(support::read_file(desk / "out/scene.toml"), Contains("end = 0.4"));
+  const std::string scene_there = support::read_file(desk / "out/scene.toml");
+  const Outcome shorter = run("0.3");
+  CHECK(shorter.status == 1);
+  CHECK_THAT(shorter.err, Contains("beyond time.end = 0.3"));
+  CHECK(support::read_file(desk / "out/scene.toml") == scene_there);
+}
+
+TEST_CASE("a scene that is another one is told by the keys that differ, with both values", "[commands]") {
+  const Desk desk;
+  const std::string file = desk.file("t.h5");
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", file, "-q", "--steps", "1"}).status == 0);
+  const Outcome other = desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "--set", "flow.rate=2", "--set",
+                              "time.end=7", "--set", "numerics.label_order=30"});
+  CHECK(other.status == 1);
+  CHECK_THAT(other.err, Contains("belongs to another scene: flow.rate is 1.0 there and 2.0 here, time.end is 0.5 there and 7.0 here, "
+                                 "numerics.label_order is \"auto\" there and 30 here; give another -o, or --force"));
+  const Outcome more = desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "--set",
+                             "vesicle=[{shape=\"sphere\", order=6}, {shape=\"sphere\", center=[3.0, 0.0, 0.0], order=6}]"});
+  CHECK(more.status == 1);
+  CHECK_THAT(more.err, Contains("vesicle.0.shape is \"prolate\" there and \"sphere\" here") && Contains("more keys"));
+}
+
+TEST_CASE("a warning that was given is not given again after a resume: the bytes stay the same", "[commands]") {
+  const Desk desk("[flow]\nkind = \"none\"\n[time]\nend = 0.2\n[[vesicle]]\nshape = \"prolate\"\nreduced_volume = 0.85\norder = 6\n");
+  const auto simulate = [&](const char* name, std::vector<std::string> more) {
+    std::vector<std::string> words{"simulate", desk.file("s.toml"), "-o", desk.file(name), "-q", "--resume", "--set", "numerics.tail_warning=0.01"};
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(desk(words).status == 0);
+  };
+  simulate("a.h5", {});
+  simulate("b.h5", {"--steps", "7"});
+  simulate("b.h5", {});
+  const sim::TrajectoryReader reader(desk.file("a.h5"));
+  CHECK_FALSE((reader.notes().empty() && reader.header().warnings.empty()));
+  const bool same = support::read_file(desk / "a.h5") == support::read_file(desk / "b.h5");
+  CHECK(same);
+}
+
 TEST_CASE("zero steps evaluate the initial state only", "[commands]") {
   const Desk desk;
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--steps", "0"}).status == 0);

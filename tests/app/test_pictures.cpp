@@ -55,7 +55,10 @@ TEST_CASE("a movie is kept when it was made of the same frames at the same rate,
   CHECK(support::read_file(movie) != made);
   run();  // the scene says 30
   CHECK(support::read_file(movie) == made);
-  support::write_file(movie, made + "x");  // somebody else's
+  support::write_file(movie, made + "x");  // somebody else's now
+  CHECK_THAT(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"}).err, Contains("has been changed since"));
+  CHECK(support::read_file(movie) == made + "x");
+  fs::remove(movie);
   run();
   CHECK(support::read_file(movie) == made);
 }

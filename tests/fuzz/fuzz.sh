@@ -6,7 +6,7 @@ program=$1
 corpus=$2
 shift 2
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap 'rm -rf "$work" /tmp/tanktread-fuzz-pipe' EXIT
 log=$work/log
 if "$program" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -print_final_stats=1 "$@" "$work" "$corpus" >"$log" 2>&1; then
   grep -E '^Done|stat::(number_of_executed|peak_rss)' "$log"

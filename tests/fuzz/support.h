@@ -1,7 +1,7 @@
 // What the fuzz targets share: the input as a file, and the promise that every refusal is one sentence.
 #pragma once
 
-#include <sys/mman.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -14,18 +14,21 @@
 
 namespace fuzz {
 
-/// A file in memory that has a path.
+/// A file in memory that has a name of its own: HDF5 opens none by the link in /proc to one without.
 class MemoryFile {
  public:
-  MemoryFile(const std::uint8_t* bytes, std::size_t size) : fd_(memfd_create("input", MFD_CLOEXEC)) {
-    if (fd_ < 0 || ::write(fd_, bytes, size) != static_cast<ssize_t>(size)) std::abort();
+  MemoryFile(const std::uint8_t* bytes, std::size_t size)
+      : path_((std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path()) /
+              ("tanktread-fuzz-" + std::to_string(::getpid()))) {
+    const int file = ::open(path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0600);
+    if (file < 0 || ::write(file, bytes, size) != static_cast<ssize_t>(size) || ::close(file) != 0) std::abort();
   }
   MemoryFile(const MemoryFile&) = delete;
-  ~MemoryFile() { ::close(fd_); }
-  std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(fd_); }
+  ~MemoryFile() { ::unlink(path_.c_str()); }
+  const std::filesystem::path& path() const { return path_; }
 
  private:
-  int fd_;
+  std::filesystem::path path_;
 };
 
 [[noreturn]] inline void broken(const char* promise) {

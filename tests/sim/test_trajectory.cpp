@@ -88,8 +88,7 @@ TEST_CASE("a trajectory gives back what was written, bit for bit", "[trajectory]
   const TemporaryFolder folder;
   const auto path = folder / "t.h5";
   written(path, 5, 5);
-  CHECK_FALSE(std::filesystem::exists(folder / "t.h5.lock"));
-  CHECK_FALSE(std::filesystem::exists(folder / "t.h5.tmp"));
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator()) == 1);
   const TrajectoryReader reader(path);
   CHECK(reader.count() == 5);
   CHECK(reader.header().scene == header.scene);
@@ -140,7 +139,46 @@ TEST_CASE("a reader follows a trajectory that is being written", "[trajectory]")
 TEST_CASE("a second writer of the same trajectory is refused", "[trajectory]") {
   const TemporaryFolder folder;
   const TrajectoryWriter writer = written(folder / "t.h5", 2, 3);
-  CHECK_THAT(message_of([&] { TrajectoryWriter::resume(folder / "t.h5"); }), Catch::Contains("another process is writing"));
+  std::filesystem::create_symlink("t.h5", folder / "link.h5");
+  std::filesystem::create_hard_link(folder / "t.h5", folder / "twin.h5");
+  for (const char* name : {"t.h5", "link.h5", "twin.h5"}) {
+    CHECK_THAT(message_of([&] { TrajectoryWriter::resume(folder / name); }), Catch::Contains("another process is writing"));
+    CHECK_THAT(message_of([&] { written(folder / name, 1, 2); }), Catch::Contains("another process is writing"));
+  }
+  CHECK(std::filesystem::is_symlink(folder / "link.h5"));
+}
+
+TEST_CASE("a trajectory is written through a link and takes the place of no foreign file", "[trajectory]") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "disk");
+  std::filesystem::create_symlink("disk/t.h5", folder / "t.h5");
+  for (int k = 1; k < 3; ++k) {  // to nothing, then to a trajectory
+    written(folder / "t.h5", k, 4);
+    CHECK(std::filesystem::is_symlink(folder / "t.h5"));
+    CHECK(TrajectoryReader(folder / "disk/t.h5").count() == k);
+  }
+  support::write_file(folder / "thesis.pdf", "precious");
+  support::write_file(folder / "u.h5.lock", "mine");
+  support::write_file(folder / "u.h5.tmp", "mine");
+  support::write_file(folder / "u.h5", "");  // as mktemp leaves it
+  CHECK_THAT(message_of([&] { written(folder / "thesis.pdf", 1, 2); }), Catch::Contains("is not a trajectory of this program"));
+  CHECK_THAT(message_of([&] { written("/dev/null", 1, 2); }), Catch::Contains("is not a file"));
+  written(folder / "u.h5", 1, 2);
+  CHECK(support::read_file(folder / "thesis.pdf") == "precious");
+  CHECK(support::read_file(folder / "u.h5.lock") == "mine");
+  CHECK(support::read_file(folder / "u.h5.tmp") == "mine");
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_CASE("what cannot be made ready leaves the trajectory that was there, and no draft", "[trajectory]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "t.h5";
+  written(path, 2, 3);
+  const std::string before = support::read_file(path);
+  const auto refuse = [] { throw std::runtime_error("not today"); };
+  CHECK(message_of([&] { TrajectoryWriter::create(path, layout(3), header, state(0), payload(0), refuse); }) == "not today");
+  CHECK(support::read_file(path) == before);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator()) == 1);
 }
 
 TEST_CASE("kill -9 at any instant loses no reported state, and the run goes on from there", "[trajectory]") {

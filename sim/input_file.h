@@ -1,0 +1,26 @@
+// Files that somebody else names: only regular ones are read. A named pipe may keep its reader for ever, a device never ends.
+#pragma once
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace sim {
+
+/// The open file, or one that is not open; `why` then says "it is not a file", or what the system says.
+inline std::ifstream open_input(const std::filesystem::path& path, std::string& why) {
+  std::error_code error;
+  if (const auto status = std::filesystem::status(path, error); exists(status) && !is_regular_file(status)) {
+    why = "it is not a file";
+    std::ifstream none;
+    none.setstate(std::ios::failbit);
+    return none;
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) why = std::strerror(errno);
+  return in;
+}
+
+}  // namespace sim

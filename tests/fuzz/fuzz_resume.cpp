@@ -1,0 +1,101 @@
+// Resume records whose checksum fits. The input is a list of changes to the numbers of a whole one, most of them to those that
+// are counts and sizes. What is accepted is written again as it was, and a step can be taken from it or is refused.
+#include "sim/dynamics.h"
+#include "sim/stepper.h"
+#include "support.h"
+
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace {
+
+constexpr int order = 2, label_order = 4;
+
+const sim::Scene& scene() {
+  static const sim::Scene scene = [] {
+    sim::Scene s;
+    s.flows.push_back({});
+    s.flows.back().kind = "shear";
+    sim::VesicleParameters v;
+    v.shape = "prolate";
+    v.reduced_volume = 0.9;
+    v.order = order;
+    s.vesicles = {v};
+    s.numerics.label_order = label_order;
+    s.numerics.threads = 1;
+    s.time.step = 0.05;
+    return s;
+  }();
+  return scene;
+}
+
+sim::Setting& setting() {
+  static sim::Plans plans;
+  static sim::Setting setting = sim::make_setting(scene(), plans);
+  return setting;
+}
+
+const std::vector<double>& whole() {
+  static const std::vector<double> numbers = [] {
+    sim::Dynamics d = sim::initial_dynamics(setting());
+    sim::mark_saved(d, sim::evaluate(setting(), d));
+    return sim::serialised(sim::take_step(setting(), d, scene().time.step).dynamics);
+  }();
+  return numbers;
+}
+
+/// Where counts and sizes stand: numbers that are whole and not 0.
+const std::vector<std::size_t>& counts() {
+  static const std::vector<std::size_t> places = [] {
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < whole().size(); ++i)
+      if (const double x = whole()[i]; x != 0 && x == std::floor(x)) all.push_back(i);
+    return all;
+  }();
+  return places;
+}
+
+/// Changes of 4 bytes each: what is done, where (two bytes), and to what.
+std::vector<double> changed(const std::uint8_t* bytes, std::size_t size) {
+  constexpr double values[] = {0,    1,     -1,   2,      3,    4,       9,     25,     0.5,     1e3,      65536,
+                               1e6,  1e9,   1e18, 1e150,  1e300, 0x1p31, 0x1p32, 0x1p53, INFINITY, -INFINITY, NAN,
+                               1e-300, -0.0, 8,    1024};
+  std::vector<double> numbers = whole();
+  for (std::size_t at = 0; at + 4 <= size && !numbers.empty(); at += 4) {
+    const std::size_t where = bytes[at + 1] + 256U * bytes[at + 2], kind = bytes[at];
+    const std::size_t place = std::min((kind & 0x80) ? where % numbers.size() : counts()[where % counts().size()], numbers.size() - 1);
+    const double value = values[bytes[at + 3] % std::size(values)];
+    const auto here = numbers.begin() + static_cast<std::ptrdiff_t>(place);
+    switch (kind % 8) {
+      case 0: numbers.resize(place); break;
+      case 1: numbers.erase(here); break;
+      case 2: numbers.insert(here, value); break;
+      case 3: *here += 1; break;
+      case 4: *here *= double(bytes[at + 3]) - 128; break;
+      default: *here = value;
+    }
+  }
+  return numbers;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  const std::vector<double> numbers = changed(bytes, size);
+  sim::TrajectoryLayout layout;
+  layout.order = order;
+  layout.label_order = label_order;
+  fuzz::accepted([&] {
+    const sim::Dynamics d = sim::deserialised(numbers, layout);
+    const std::vector<double> again = sim::serialised(d);
+    if (again.size() != numbers.size() || !std::equal(again.begin(), again.end(), numbers.begin()))
+      fuzz::broken("an accepted record is written as it was");
+    for (const sim::VesicleDynamics& v : d.vesicles)
+      for (const sim::Coefficients* c : {&v.position, &v.displacement, &v.motion.velocity, &v.motion.tension, &v.labels,
+                                         &v.saved_position, &v.saved_velocity})
+        if (c->values.rows() != sim::coefficient_count(c->order)) fuzz::broken("an accepted record is of its orders");
+    if (d.vesicles.front().position.order == order) fuzz::accepted([&] { sim::take_step(setting(), d, scene().time.step); });
+  });
+  return 0;
+}
