@@ -98,8 +98,10 @@ Dynamics resumed(const TrajectoryWriter& file, const Scene& scene, const std::fi
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
     if (d.vesicles[k].position.order != scene.vesicles[k].order) record.refuse("an order is not that of the scene");
   if (!file.holds(d.step, d.time, d.saves)) record.refuse("it does not belong to the states of the file");
-  if (d.dt_limit < std::ldexp(scene.time.step, -scene.numerics.step_retries) * (1 - same_time) ||
-      d.dt_limit > scene.time.step * (1 + same_time))
+  // Starts of nearly round vesicles take short steps, but none that doubling would not soon make long.
+  constexpr int most_doublings = 60;
+  if (const double longest = longest_step(scene);
+      d.dt_limit < std::ldexp(longest, -most_doublings) || d.dt_limit > longest * (1 + same_time))
     record.refuse("the scene allows no such step");
   return d;
 }
