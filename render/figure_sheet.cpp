@@ -21,8 +21,10 @@ struct Extent {
 
 Extent extent_of(const sim::State& state, const ViewAxes& axes) {
   Extent e{Eigen::Vector2d::Constant(1e300), Eigen::Vector2d::Constant(-1e300)};
-  for (const glm::vec3& point : summarize(state).points) {
-    const Eigen::Vector2d p(glm::dot(glm::dvec3(point), axes.right), glm::dot(glm::dvec3(point), axes.up));
+  const StateSummary summary = summarize(state);
+  for (std::size_t k = 0; k < summary.points.size(); ++k) {
+    const glm::dvec3 point = summary.point(k);
+    const Eigen::Vector2d p(glm::dot(point, axes.right), glm::dot(point, axes.up));
     e.low = e.low.cwiseMin(p);
     e.high = e.high.cwiseMax(p);
   }
