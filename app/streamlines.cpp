@@ -1,5 +1,7 @@
 #include "streamlines.h"
 
+#include "scales.h"
+
 #include "render/surface.h"
 #include "sim/velocity.h"
 
@@ -164,6 +166,7 @@ FlowRequest flow_request(sim::Plans& plans, const sim::State& state, const rende
   widen(request.x, request.y.size() / 1.5);
   if (p.frame == "vesicle") request.frame_velocity = frame_velocity(plans, state);
   request.spacing = p.spacing * length;
+  request.length = length;
   request.with_speed = p.background == "speed";
   return request;
 }
@@ -190,8 +193,10 @@ render::FlowPicture flow_picture(sim::Plans& plans, const sim::Scene& scene, con
     }
   render::StreamlineOptions options;
   options.spacing = request.spacing;
+  options.rest = natural_scales(scene, state, request.length).rounding_of(sim::FieldScale::velocity);
   picture.lines = render::streamlines([&](const Vec2& p) { return sampler(p); }, request.x, request.y, options, seeds);
   if (request.with_speed) std::tie(picture.speed, picture.speed_window) = sampler.speeds();
+  if (request.with_speed && picture.speed.maxCoeff() <= options.rest) picture.speed.setZero();
   const sim::Vec3& o = request.plane.origin;
   const sim::Vec3& n = request.plane.normal;
   const sim::Vec3& u = request.frame_velocity;
