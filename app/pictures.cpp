@@ -1,6 +1,5 @@
 #include "pictures.h"
 
-#include "captions.h"
 #include "scene_text.h"
 #include "streamlines.h"
 #include "version.h"
@@ -169,18 +168,17 @@ std::string laid_note(const ViewPanel& p, double time) {
   for (const double laid : p.laid)
     if (std::abs(time - laid) <= p.notice)
       return fmt::format("lines {} at {}", time < laid ? "will be laid anew" : "were laid anew",
-                         time_caption(p.source.settings.scene, laid));
+                         time_caption(p.source.settings.scene, laid, p.time_format));
   return {};
 }
 
-/// Scene time that passes in `seconds` of the movie.
-double scene_time(const PictureSource& source, double seconds) {
+/// Scene time from frame to frame.
+double time_of_frame(const PictureSource& source) {
   const render::MovieParameters& movie = source.settings.movie;
   const std::int64_t states = source.trajectory.count();
-  const double per_frame = movie.time_per_frame > 0 ? movie.time_per_frame
-                           : states > 1             ? source.trajectory.time(states - 1) / static_cast<double>(states - 1)
-                                                    : 0;
-  return seconds * movie.frame_rate * per_frame;
+  return movie.time_per_frame > 0 ? movie.time_per_frame
+         : states > 1             ? source.trajectory.time(states - 1) / static_cast<double>(states - 1)
+                                  : 0;
 }
 
 render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& state) {
@@ -205,7 +203,7 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   if (frame.view.inset) frame.inset = inset_of(p, state, frame.camera, p.framing.moment(summary).centre);
   frame.captions = p.captions;
   if (p.stamped) {
-    frame.captions.time = time_caption(p.source.settings.scene, state.time);
+    frame.captions.time = time_caption(p.source.settings.scene, state.time, p.time_format);
     frame.captions.note = laid_note(p, state.time);
   }
   return frame;
@@ -300,7 +298,11 @@ Production prepare_pictures(const std::vector<PictureSource>& sources, std::opti
       constexpr double notice = 1.2;  // seconds
       production.panels.back().stamped = c == 0;
       production.panels.back().laid = laid[k];
-      production.panels.back().notice = scene_time(sources[k], notice);
+      const double per_frame = time_of_frame(sources[k]);
+      const std::int64_t states = sources[k].trajectory.count();
+      production.panels.back().notice = notice * sources[k].settings.movie.frame_rate * per_frame;
+      production.panels.back().time_format =
+          time_format(sources[k].settings.scene, per_frame, states > 0 ? sources[k].trajectory.time(states - 1) : 0);
     }
   return production;
 }

@@ -1,6 +1,7 @@
 // From a trajectory to single pictures: what all frames of a movie share, and the picture of one instant.
 #pragma once
 
+#include "captions.h"
 #include "fields.h"
 #include "options.h"
 
@@ -30,6 +31,7 @@ struct ViewPanel {
   bool stamped = true;  ///< shows the time and notes
   std::vector<double> laid;  ///< when material lines were laid anew on any vesicle
   double notice = 0;         ///< how long before and after that a note says so, in time of the scene
+  TimeFormat time_format = {};
 };
 
 struct Production {

@@ -98,8 +98,19 @@ std::pair<std::string, std::string> axis_names(const CutPlane& plane) {
 }
 
 std::string time_text(const FigureInput& input, double time) {
-  const double digits = std::abs(time) < 1 ? 1e4 : 1e2;
-  return fmt::format("{} = {}", input.time_symbol, number_text(std::round(time * digits) / digits));
+  if (time == 0) return fmt::format("{} = 0", input.time_symbol);
+  // Four digits, two after the point for numbers above 1; more where instants lie closer.
+  const double size = std::floor(std::log10(std::abs(time)));
+  double place = std::abs(time) < 1 ? size - 3 : std::max(size - 9, -2.0);
+  std::vector<double> times;
+  for (const sim::State& state : input.states) times.push_back(input.time_factor * state.time);
+  std::sort(times.begin(), times.end());
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (times[k] > times[k - 1]) place = std::min(place, std::floor(std::log10(times[k] - times[k - 1])) - 1);
+  place = std::max(place, size - 11);  // beyond it rounding errors of sums of steps
+  const double unit = std::pow(10.0, std::abs(place));
+  const double shown = place < 0 ? std::round(time * unit) / unit : std::round(time / unit) * unit;
+  return fmt::format("{} = {}", input.time_symbol, number_text(shown, 12));
 }
 
 std::string letter(std::size_t k) {

@@ -118,6 +118,9 @@ struct Sheet {
 /// Rows of panels at one scale that fill the page, each as wide as its state needs.
 Sheet sheet_layout(const FigureInput& input);
 
+/// "γ̇t = 2.5": as exact as tells the instants of the figure apart. `time`: as shown.
+std::string time_text(const FigureInput& input, double time);
+
 /// A text that may hold commas or quotes as one cell of a CSV.
 std::string csv_cell(const std::string& text);
 

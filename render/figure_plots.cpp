@@ -32,7 +32,7 @@ Range range_of_axis(const std::vector<double>& values, Scale scale, bool absciss
   double size = 0;
   for (const double v : values)
     if (std::isfinite(v)) size = std::max(size, std::abs(v));
-  if (abscissa) return range_of(values, 0, 1e-12);
+  if (abscissa) return range_of(values, 0);
   return range_of(values, 0.07, std::max(1e-4 * size, 1e-14));  // rounding errors are not blown up to the height of a panel
 }
 
