@@ -17,6 +17,7 @@ struct FlowRequest {
   bool with_speed = true;    ///< also speeds on a net, as a background
 };
 
+/// Throws Interrupted at the first signal: fine spacings take minutes.
 render::FlowPicture flow_picture(sim::Plans&, const sim::Scene&, const sim::State&, const FlowRequest&);
 
 /// Mean of the velocities of the vesicles' centroids.

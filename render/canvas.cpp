@@ -55,11 +55,14 @@ std::string xml_text(std::string_view text) {
 std::string text_element(const PageText& t) {
   constexpr const char* anchors[] = {"start", "middle", "end"};
   const auto channel = [](double v) { return static_cast<int>(std::lround(255 * v)); };
+  const cairo_matrix_t& m = t.place;
+  const bool plain = m.xx == 1 && m.yx == 0 && m.xy == 0 && m.yy == 1 && m.x0 == 0 && m.y0 == 0;
+  const std::string moved = plain ? "" : fmt::format(" transform=\"matrix({:.6g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g})\"", m.xx, m.yx,
+                                                     m.xy, m.yy, m.x0, m.y0);
   std::string element =
-      fmt::format("<text xml:space=\"preserve\" transform=\"matrix({:.6g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g})\" x=\"{:.6g}\" "
-                  "y=\"{:.6g}\" font-family=\"'DejaVu Sans', Verdana, sans-serif\" font-size=\"{:.6g}\" text-anchor=\"{}\" "
+      fmt::format("<text xml:space=\"preserve\"{} x=\"{:.6g}\" y=\"{:.6g}\" font-family=\"'DejaVu Sans', Verdana, sans-serif\" font-size=\"{:.6g}\" text-anchor=\"{}\" "
                   "fill=\"#{:02x}{:02x}{:02x}\"",
-                  t.place.xx, t.place.yx, t.place.xy, t.place.yy, t.place.x0, t.place.y0, t.x, t.y, t.size,
+                  moved, t.x, t.y, t.size,
                   anchors[static_cast<int>(t.align)], channel(t.red), channel(t.green), channel(t.blue));
   if (t.alpha < 1) element += fmt::format(" fill-opacity=\"{:.3g}\"", t.alpha);
   element += ">";

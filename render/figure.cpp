@@ -57,6 +57,10 @@ std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, c
   if (count == 0) return chosen;
   if (!parameters.times.empty()) {
     for (const double time : parameters.times) {
+      const double end = state_times.back();
+      if (!(time >= 0 && time <= end * (1 + 1e-9)))
+        throw std::invalid_argument(
+            fmt::format("the trajectory goes from t = 0 to t = {:.6g}; there is no t = {:.6g} for figure.times", end, time));
       const auto nearest = std::min_element(state_times.begin(), state_times.end(),
                                             [&](double a, double b) { return std::abs(a - time) < std::abs(b - time); });
       chosen.push_back(static_cast<std::size_t>(nearest - state_times.begin()));

@@ -62,7 +62,7 @@ struct FigureInput {
   std::vector<Plot> plots;          ///< of kinds that want plots
   std::vector<Image> stills;        ///< of "snapshots": the pictures that sheet_layout() asks for
   FlowPicture flow;                 ///< of "streamlines"
-  std::string time_symbol = "t";    ///< "γ̇t", "χt"
+  std::string time_symbol = "t";    ///< "γ̇t"
   double time_factor = 1;           ///< shown time = this x State::time
   double length = 1;                ///< area radius: lengths are shown in units of it
   std::string length_symbol = "R_{0}";
@@ -96,6 +96,7 @@ struct Page {
 Page page_of(const FigureParameters& parameters);
 
 /// `panels` indices spread evenly over `count` states, first and last among them; or, with times, the nearest states.
+/// Throws std::invalid_argument for a time beyond the last state.
 std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters);
 
 /// The plane of a figure; origin: the given point, or the vesicle's centroid. Its axes lie along x and z as far as they can.
