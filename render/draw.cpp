@@ -130,7 +130,7 @@ void Renderer::begin(const Frame& frame) {
   const int width = frame.view.size[0] * frame.view.supersampling, height = frame.view.size[1] * frame.view.supersampling;
   if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height) {
     framebuffer_.reset();
-    constexpr std::size_t of_sample = 32;  // bytes: colour and depth, their tiles in the driver, the copy that is read back
+    constexpr std::size_t of_sample = 16;  // bytes: colour and depth, the copy that is read back, and as much again for the driver
     require_memory(of_sample * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     framebuffer_.emplace(gl, width, height);
   }
