@@ -2,11 +2,13 @@
 #include "app/fields.h"
 #include "app/pictures.h"
 #include "app/scene_file.h"
+#include "app/streamlines.h"
 
 #include "sim/simulate.h"
 #include "tests/support/temporary_folder.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <string>
 
@@ -98,7 +100,7 @@ render::Legend bar_of(const std::string& range, bool still) {
   const app::Settings settings = app::parse_scene(R"([flow]
 kind = "shear"
 [time]
-end = 0.5
+end = 1
 step = 0.1
 [[vesicle]]
 shape = "prolate"
@@ -159,4 +161,35 @@ TEST_CASE("a field that vanishes up to rounding has a range of its natural size,
   const render::Legend curvature = at_rest("mean-curvature", 100, "sphere");
   CHECK(curvature.low < 1);
   CHECK(curvature.high > 1);
+}
+
+TEST_CASE("a fluid at rest has no streamlines and one colour, in any unit") {
+  for (const double radius : {1.0, 1e-6, 1e6}) {
+    INFO("radius " << radius);
+    const support::TemporaryFolder folder;
+    const app::Settings settings = app::parse_scene(fmt::format(R"([flow]
+kind = "none"
+[time]
+end = {0}
+step = {0}
+[[vesicle]]
+order = 6
+radius = {1}
+bending_modulus = {2}
+)", 0.1, radius, radius * radius * radius), "s.toml", ".");
+    const std::string file = (folder / "t.h5").string();
+    sim::SimulationOptions options;
+    options.trajectory = file;
+    sim::simulate(settings.scene, options, {});
+    const sim::TrajectoryReader reader(file);
+    const sim::State state = reader.state(reader.count() - 1);
+    sim::Plans plans;
+    render::FigureParameters parameters;
+    parameters.spacing = 0.4;
+    const render::FlowPicture flow =
+        app::flow_picture(plans, settings.scene, state, app::flow_request(plans, state, parameters, radius));
+    CHECK(flow.lines.empty());
+    CHECK(flow.speed.size() > 0);
+    CHECK(flow.speed.cwiseAbs().maxCoeff() == 0);
+  }
 }
