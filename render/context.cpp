@@ -78,7 +78,7 @@ void require_memory(std::size_t bytes) {
 }
 
 GlContext::GlContext(const GlChoice& choice) {
-  constexpr std::size_t driver = std::size_t{480} << 20;  // its libraries, its compiler and the stacks of its threads
+  constexpr std::size_t driver = std::size_t{560} << 20;  // its libraries, its compiler and the stacks of its threads
   require_memory(driver);
   try {
     back_end_ = open(choice);
