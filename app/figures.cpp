@@ -243,7 +243,7 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
   Settings settings = source.settings;
   settings.view.supersampling = std::max(settings.view.supersampling, 3);
   input.camera = settings.view.camera;
-  const double pixels = input.parameters.dots_per_inch / 72;
+  const double pixels = render::dots_per_inch(input.parameters) / 72;
   std::vector<Still> stills;
   const render::Sheet sheet = render::sheet_layout(input);
   for (std::size_t k = 0; k < sheet.panels.size(); ++k) {

@@ -35,9 +35,11 @@ const FigureRow& find_figure(std::string_view name) {
                               sim::suggestion(name, sim::row_names(figures())));
 }
 
+double dots_per_inch(const FigureParameters& p) { return p.dots_per_inch.value_or(p.unit == "px" ? 200 : 300); }
+
 Page page_of(const FigureParameters& p) {
   Page page{find_theme(p.theme), 0, 0};
-  const double points = p.unit == "px" ? 72 / p.dots_per_inch : 72 / 25.4;
+  const double points = p.unit == "px" ? 72 / dots_per_inch(p) : 72 / 25.4;
   if (p.size.size() > 2) throw std::invalid_argument("a figure's size is a width, or a width and a height");
   if (!p.size.empty()) page.width = p.size[0] * points;
   if (p.size.size() == 2) page.height = p.size[1] * points;

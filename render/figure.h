@@ -88,6 +88,9 @@ const std::vector<FigureRow>& figures();
 /// Throws std::invalid_argument that names the nearest known kind.
 const FigureRow& find_figure(std::string_view name);
 
+/// Of the PNG.
+double dots_per_inch(const FigureParameters& parameters);
+
 /// The page that parameters ask for: sizes in points, 0 where the kind decides.
 struct Page {
   Theme theme;

@@ -194,7 +194,7 @@ Figure arranged(const FigureInput& input, std::vector<Plot> plots, bool stacked,
   for (Placed& p : placed) place_legend(p, ruler, theme);
   Figure figure;
   figure.csv = std::move(csv);
-  figure.drawing = {width, total, nullptr, theme.ground, input.parameters.dots_per_inch};
+  figure.drawing = {width, total, nullptr, theme.ground, dots_per_inch(input.parameters)};
   figure.drawing.paint = [placed, theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     for (const Placed& p : placed) draw(pen, p);

@@ -138,7 +138,7 @@ Figure draw_snapshots(const FigureInput& input) {
       figure.csv += fmt::format("{},{:.10g},{},{:.10g},{:.10g},{:.10g}\n", letter(k), input.time_factor * input.states[k].time, v, c.x, c.y, c.z);
     }
   const auto stills = std::make_shared<const std::vector<Image>>(input.stills);
-  figure.drawing = {sheet.width, sheet.height, nullptr, page.theme.ground, input.parameters.dots_per_inch};
+  figure.drawing = {sheet.width, sheet.height, nullptr, page.theme.ground, dots_per_inch(input.parameters)};
   figure.drawing.paint = [sheet, stills, input_length = input.length, symbol = input.length_symbol,
                           theme = page.theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
