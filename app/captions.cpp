@@ -31,9 +31,23 @@ TimeUnit time_unit(const sim::Scene& scene) {
   return shear ? TimeUnit{"γ̇t", std::abs(scene.flows[0].rate)} : TimeUnit{};
 }
 
-std::string time_caption(const sim::Scene& scene, double time) {
+TimeFormat time_format(const sim::Scene& scene, double spacing, double end) {
+  const double factor = time_unit(scene).factor;
+  spacing *= factor;
+  end *= factor;
+  if (!(spacing > 0 && end > 0)) return {};
+  constexpr int most = 4;  // places after the point without a power of ten
+  const auto places = [](double step) { return std::max(2, static_cast<int>(std::ceil(-std::log10(step) - 1e-9))); };
+  if (places(spacing) <= most && end < 1e5) return {places(spacing), 0};
+  const int exponent = static_cast<int>(std::floor(std::log10(end)));
+  return {std::min(places(spacing * std::pow(10.0, -exponent)), 9), exponent};
+}
+
+std::string time_caption(const sim::Scene& scene, double time, const TimeFormat& format) {
   const TimeUnit unit = time_unit(scene);
-  return fmt::format("{} = {:.2f}", unit.symbol, unit.factor * time);
+  std::string number = fmt::format("{:.{}f}", unit.factor * time * std::pow(10.0, -format.exponent), format.places);
+  if (format.exponent != 0) number += fmt::format("·10^{{{}{}}}", format.exponent < 0 ? "−" : "", std::abs(format.exponent));
+  return fmt::format("{} = {}", unit.symbol, number);
 }
 
 std::string parameter_caption(const sim::Scene& scene, double area_radius, double reduced_volume) {

@@ -15,8 +15,16 @@ TimeUnit time_unit(const sim::Scene&);
 /// Rate of deformation at the size of a vesicle, 1/time: the largest of all flows; 0: none that deforms.
 double flow_rate(const sim::Scene&, double area_radius);
 
-/// "γ̇t = 12.50" in a steady shear flow, "t = 12.50" otherwise.
-std::string time_caption(const sim::Scene&, double time);
+/// How the times of one movie are written: all with the same digits, enough to tell its frames apart.
+struct TimeFormat {
+  int places = 2;    ///< after the point
+  int exponent = 0;  ///< of a power of ten after the number; 0: none
+};
+/// spacing: of frames; end: of the movie; in time of the scene.
+TimeFormat time_format(const sim::Scene&, double spacing, double end);
+
+/// "γ̇t = 12.50" in a steady shear flow, "t = 12.50" otherwise, "t = 1.25·10^{-6}" where times are very short or long.
+std::string time_caption(const sim::Scene&, double time, const TimeFormat& = {});
 /// "Ca = 100   λ = 1   ν = 0.85": area_radius and reduced_volume of the first vesicle, as
 /// they are, not as asked for. Where vesicles differ: "λ = 1, 10", and ν only when all shapes are alike.
 /// Ca = mu chi R^3 / kappa_b with chi the shear or extension rate, or the wall-ward shear a R of a Poiseuille flow.

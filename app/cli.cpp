@@ -87,7 +87,7 @@ constexpr OptionRow option_rows[] = {
     {"output", [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "where the results go"); }},
     {"jobs",
      [](CLI::App& app, Options& o) {
-       app.add_option("-j,--jobs", o.jobs, "threads (default: as the scene says)")->check(CLI::Range(1, 1024));
+       app.add_option("-j,--jobs", o.jobs, "threads, or processes that draw the frames of render (default: as the scene says)")->check(CLI::Range(1, 1024));
      }},
     {"set",
      [](CLI::App& app, Options& o) {
@@ -278,6 +278,9 @@ int main(int argc, char** argv) {
         return status;
       }
     return 2;
+  } catch (const Interrupted&) {
+    tell("interrupted");
+    return interrupted_status;
   } catch (const std::bad_alloc&) {
     tell("there is not enough memory");
   } catch (const std::system_error& error) {

@@ -57,8 +57,9 @@ int render(const Options& options) {
     return 0;
   }
   const fs::path folder = options.output.empty() ? here : options.output;
-  const auto stopped = [] {
-    tell("interrupted; the same command continues");
+  const auto stopped = [&] {
+    const bool told_by_parent = options.shards > 1 && options.quiet;
+    if (!told_by_parent) tell("interrupted; the same command continues");
     return interrupted_status;
   };
   {
@@ -66,16 +67,20 @@ int render(const Options& options) {
     adopt_movie(there, movie_name(find_movie_format(settings.front().movie.format)));
     require_pictures(there, settings.front());
   }
+  std::int64_t by_processes = 0;
   if (options.jobs > 1 && options.shards == 1) {
     check_movie(find_movie_format(settings.front().movie.format), settings.front().view.size[0], settings.front().view.size[1]);
-    if (!draw_in_processes(options, folder)) return stopped();
+    const std::optional<std::int64_t> drawn = draw_in_processes(options, folder);
+    if (!drawn) return stopped();
+    by_processes = *drawn;
   }
   const FolderLock lock(folder, options.shard, options.shards);
   OwnedFiles files(folder);
   const FrameReport report = render_frames(sources, files, options);
   if (report.interrupted) return stopped();
   if (!options.quiet) {
-    fmt::print("{}: {} frames drawn, {} kept\n", printable((folder / "frames").string()), report.drawn, report.kept);
+    fmt::print("{}: {} frames drawn, {} kept\n", printable((folder / "frames").string()), report.drawn + by_processes,
+               report.kept - by_processes);
     for (const fs::path& file : {report.movie, report.poster})
       if (!file.empty()) fmt::print("{}\n", printable(file.string()));
   }

@@ -1,6 +1,7 @@
 #include "fields.h"
 
 #include "captions.h"
+#include "scales.h"
 
 #include "render/colormap.h"
 #include "render/style.h"
@@ -64,12 +65,20 @@ double quantile(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(k)];
 }
 
-/// Both ends moved outward to round numbers.
-std::pair<double, double> rounded(double low, double high) {
-  if (const double size = std::max(std::abs(low), std::abs(high)); high - low <= 1e-6 * size || size == 0) {
-    const double room = size > 0 ? 0.1 * size : 1;  // one value everywhere, up to rounding errors
-    low -= room;
-    high += room;
+/// Of a field, in the units of its legend.
+struct FieldSize {
+  double natural = 1;   ///< how large it would be if it were neither zero nor extreme
+  double rounding = 0;  ///< smaller differences mean nothing
+};
+
+/// Both ends moved outward to round numbers. A field that is one value up to rounding gets a range about that value.
+std::pair<double, double> rounded(double low, double high, const FieldSize& size) {
+  const double largest = std::max(std::abs(low), std::abs(high));
+  if (high - low <= std::max(2 * size.rounding, 1e-6 * largest)) {
+    const bool zero = largest <= 2 * size.rounding;
+    const double middle = zero ? 0 : (low + high) / 2, room = zero ? size.natural : 0.1 * std::abs(middle);
+    low = middle - room;
+    high = middle + room;
   }
   const double width = high - low, power = std::pow(10, std::floor(std::log10(width / 10)));
   double step = 10 * power;
@@ -82,39 +91,40 @@ const render::ColourMapRow& map_for(const render::ViewParameters& view, bool bot
   return render::find_colour_map(view.colour_map.value_or(both_signs ? "blue-red" : "viridis"));
 }
 
+/// `values`: of the whole movie; empty when the range is given and only one picture is drawn. `shown`: of that picture.
 /// `end`: an automatic range ends there at the latest, unless all values are larger.
-void give_range(render::Legend& legend, const render::ViewParameters& view, std::vector<double>& values, bool has_sign,
+void give_range(render::Legend& legend, const render::ViewParameters& view, std::vector<double>& values,
+                const std::vector<double>& shown, bool has_sign, const FieldSize& size,
                 double end = std::numeric_limits<double>::infinity()) {
-  double low = 0, high = 1, least = 0, most = 0;
+  double low = 0, high = 1;
   if (!values.empty()) {
     constexpr double outermost = 0.005;
     low = quantile(values, outermost);
     high = quantile(values, 1 - outermost);
     if (low < end) high = std::min(high, end);
-    least = *std::min_element(values.begin(), values.end());
-    most = *std::max_element(values.begin(), values.end());
   }
   if (!view.field_range.empty()) {
     low = view.field_range[0];
     high = view.field_range[1];
   }
-  const bool both = has_sign && low < 0 && high > 0 && std::min(-low, high) > 0.3 * std::max(-low, high);
+  const bool both = has_sign && low < -size.rounding && high > size.rounding && std::min(-low, high) > 0.3 * std::max(-low, high);
   const render::ColourMapRow& map = map_for(view, both);
   if (view.field_range.empty()) {
     if (map.kind == render::MapKind::diverging) {
       high = std::max(std::abs(low), std::abs(high));
       low = -high;
     }
-    std::tie(low, high) = rounded(low, high);
+    std::tie(low, high) = rounded(low, high, size);
   }
   legend.low = low;
   legend.high = high;
   legend.colours = render::colour_table(map);
   // Only a range about zero puts zero where the map turns.
   legend.mirrored = map.kind == render::MapKind::diverging && std::abs(low + high) <= 1e-9 * (high - low);
-  const double slack = 0.005 * (high - low);
-  legend.below = least < low - slack;
-  legend.above = most > high + slack;
+  const double slack = view.field_range.empty() ? 0.005 * (high - low) : size.rounding;
+  const auto [least, most] = std::minmax_element(shown.begin(), shown.end());
+  legend.below = least != shown.end() && *least < low - slack;
+  legend.above = most != shown.end() && *most > high + slack;
 }
 
 struct Quantity {
@@ -139,7 +149,7 @@ void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& s
   render::ViewParameters view = settings.view;
   view.field_range.clear();
   std::vector<double> all = values;
-  give_range(legend, view, all, false);
+  give_range(legend, view, all, values, false, {});
   legend.mirrored = false;  // whole bodies have one value each: no dots
   for (const double value : values) p.bodies.push_back(render::mapped(legend.colours, (value - legend.low) / (legend.high - legend.low)));
   p.legend = legend;
@@ -148,7 +158,7 @@ void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& s
 }  // namespace
 
 Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vector<std::int64_t>& states,
-                       const Settings& settings, double area_radius) {
+                       const Settings& settings, double area_radius, const sim::State* still) {
   const render::ViewParameters& view = settings.view;
   Painting p;
   p.length = area_radius;
@@ -164,23 +174,29 @@ Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vecto
   p.field = &sim::find_field(view.field);
   if (p.field->needs_neighbours && first.vesicles.size() < 2)
     throw std::invalid_argument(fmt::format("the field '{}' needs two vesicles or more", p.field->name));
-  std::vector<double> values;
+  std::vector<double> values, of_still;
   sim::Plans plans;
-  for (const std::int64_t k : states) {
-    if (!view.field_range.empty()) break;
-    const sim::State state = trajectory.state(k);
-    for (std::size_t v = 0; v < state.vesicles.size(); ++v) collect(painted_field(plans, p, settings, state, v), values);
-  }
+  const auto add = [&](const sim::State& state, std::vector<double>& to) {
+    sim::Surroundings surroundings;
+    for (std::size_t v = 0; v < state.vesicles.size(); ++v)
+      collect(painted_field(plans, p, settings, state, v, surroundings), to);
+  };
+  if (still) add(*still, of_still);
+  if (!still || view.field_range.empty())
+    for (const std::int64_t k : states) add(trajectory.state(k), values);
+  const NaturalScales scales = natural_scales(settings.scene, first, area_radius);
+  const double unit = scale_of(p, settings.scene.vesicles.front().bending_modulus);
   p.legend.emplace();
   p.legend->label = label_of(p, settings.scene);
-  give_range(*p.legend, view, values, p.field->has_sign, p.field->automatic_end);
+  give_range(*p.legend, view, values, std::vector(still ? of_still : values), p.field->has_sign,
+             {unit * scales.size_of(p.field->scale), unit * scales.rounding_of(p.field->scale)}, p.field->automatic_end);
   return p;
 }
 
 sim::Coefficients painted_field(sim::Plans& plans, const Painting& p, const Settings& settings, const sim::State& state,
-                                std::size_t vesicle) {
+                                std::size_t vesicle, sim::Surroundings& surroundings) {
   const double modulus = settings.scene.vesicles[vesicle].bending_modulus;
-  sim::Coefficients field = sim::membrane_field(plans, *p.field, state, vesicle, modulus);
+  sim::Coefficients field = sim::membrane_field(plans, *p.field, state, vesicle, modulus, surroundings);
   field.values *= scale_of(p, modulus);
   return field;
 }

@@ -19,13 +19,14 @@ struct Painting {
   double rate = 0;                       ///< of the flow at the size of a vesicle; 0: none
 };
 
-/// Passes over `states` of the trajectory when the style paints a field whose range is not given: the range then holds
-/// all but the lowest and the highest 0.5 % of the membranes' area, widened to round numbers; a field with both signs has
-/// zero in the middle. Throws std::invalid_argument for a field that this scene does not have.
+/// Passes over `states` of the trajectory when the style paints a field. A range that is not given holds all but the lowest
+/// and the highest 0.5 % of the membranes' area, widened to round numbers; a field with both signs has zero in the middle.
+/// The bar of any range tells whether values lie beyond it: of the movie, or of the `still` when only that is drawn. Throws std::invalid_argument for a field that this scene does not have.
 Painting plan_painting(const sim::TrajectoryReader&, const std::vector<std::int64_t>& states, const Settings&,
-                       double area_radius);
+                       double area_radius, const sim::State* still = nullptr);
 
-/// The field of one vesicle in the units of the legend, for make_mesh().
-sim::Coefficients painted_field(sim::Plans&, const Painting&, const Settings&, const sim::State&, std::size_t vesicle);
+/// The field of one vesicle in the units of the legend, for make_mesh(); the surroundings are those of the state.
+sim::Coefficients painted_field(sim::Plans&, const Painting&, const Settings&, const sim::State&, std::size_t vesicle,
+                               sim::Surroundings&);
 
 }  // namespace app

@@ -204,7 +204,7 @@ std::vector<render::Plot> spectra_plots(const render::FigureInput& input) {
     const int p = v.position.order, q = 4 * p;
     const sim::Coefficients h = sim::mean_curvature(plans, sim::resized(v.position, q), q);
     render::Curve x, k;
-    x.name = fmt::format("{} = {}", input.time_symbol, render::number_text(std::round(1e3 * input.time_factor * state.time) / 1e3));
+    x.name = render::time_text(input, input.time_factor * state.time);
     x.instant = (state.time - first) / span;
     x.marker = render::Marker::dot;
     k = x;
@@ -243,7 +243,7 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
   Settings settings = source.settings;
   settings.view.supersampling = std::max(settings.view.supersampling, 3);
   input.camera = settings.view.camera;
-  const double pixels = input.parameters.dots_per_inch / 72;
+  const double pixels = render::dots_per_inch(input.parameters) / 72;
   std::vector<Still> stills;
   const render::Sheet sheet = render::sheet_layout(input);
   for (std::size_t k = 0; k < sheet.panels.size(); ++k) {

@@ -239,9 +239,9 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles&
 void render_still(const std::vector<PictureSource>& sources, double time, const fs::path& path, ResultFiles& files,
                   const Options& options) {
   const double end = end_of(longest(sources));
-  if (time < 0 || time > end * (1 + 1e-9))
+  if (!(time >= 0 && time <= end * (1 + 1e-9)))
     throw std::invalid_argument(fmt::format("the trajectory goes from t = 0 to t = {:.6g}; there is no t = {:.6g}", end, time));
-  const Production production = prepare_pictures(sources);
+  const Production production = prepare_pictures(sources, time);
   if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
   Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
   const render::Image image = draw_picture(studio, production, time);

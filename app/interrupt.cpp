@@ -24,4 +24,8 @@ void watch_signals() {
 
 bool interrupted() { return signalled != 0; }
 
+void stop_if_interrupted() {
+  if (interrupted()) throw Interrupted{};
+}
+
 }  // namespace app

@@ -1,6 +1,8 @@
 // Ctrl-C and SIGTERM ask for an end: the step or frame under way is finished and saved. A second Ctrl-C ends at once.
 #pragma once
 
+#include <filesystem>
+
 namespace app {
 
 /// Exit status after an interruption.
@@ -10,5 +12,12 @@ inline constexpr int interrupted_status = 130;
 /// rather than the end.
 void watch_signals();
 bool interrupted();
+
+/// What takes long and leaves nothing half done ends by this: nothing of it is kept.
+struct Interrupted {
+  std::filesystem::path simulated;  ///< a trajectory as far as it went; empty: none
+};
+/// Throws Interrupted.
+void stop_if_interrupted();
 
 }  // namespace app

@@ -23,7 +23,8 @@ const std::vector<MovieFormat>& movie_formats() {
         "scale='min(960,iw)':-1:flags=lanczos,split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:"
         "dither=bayer:bayer_scale=4",
         "-loop", "0"}},
-      {"webp", "animated WebP, at most 1280 px wide: smaller and better than gif where it is understood", false, 30, "webp",
+      {"webp", "animated WebP, at most 1280 px wide and 60 frames a second: smaller and better than gif where it is understood", false, 60,
+       "webp",
        {"-vf", "scale='min(1280,iw)':-1:flags=lanczos", "-c:v", "libwebp_anim", "-quality", "88", "-compression_level", "4",
         "-loop", "0"}},
   };

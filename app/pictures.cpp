@@ -1,6 +1,5 @@
 #include "pictures.h"
 
-#include "captions.h"
 #include "printable.h"
 #include "scene_text.h"
 #include "streamlines.h"
@@ -90,6 +89,7 @@ render::FlowLines lines_of(sim::Plans& plans, const ViewPanel& p, const sim::Sta
   request.y = {-beyond * camera.half_height, beyond * camera.half_height};
   if (p.view.streamlines == "vesicles") request.frame_velocity = frame_velocity(plans, state);
   request.spacing = camera.half_height / 9;
+  request.length = p.captions.scale_length;
   request.with_speed = false;
   for (const render::Streamline& line : flow_picture(plans, p.source.settings.scene, state, request).lines) {
     const std::vector<Eigen::Index> heads = render::arrow_places(line, 7 * request.spacing);
@@ -114,14 +114,33 @@ render::FlowLines lines_of(sim::Plans& plans, const ViewPanel& p, const sim::Sta
   return all;
 }
 
+/// What the insets of all frames must hold.
+void frame_inset(ViewPanel& p, const std::vector<render::StateSummary>& summaries) {
+  glm::dvec2 low(1e300), high(-1e300);
+  for (const render::StateSummary& summary : summaries) {
+    glm::dvec3 origin(0);
+    if (p.framing.follows) origin = p.framing.moment(summary).centre;
+    const std::size_t each = summary.points.size() / summary.centroids.size();
+    for (std::size_t k = 0; k < summary.points.size(); ++k) {
+      if (p.framing.vesicle >= 0 && k / each != static_cast<std::size_t>(p.framing.vesicle)) continue;  // its neighbours as they come
+      const glm::dvec3 point = summary.point(k) - origin;
+      low = glm::min(low, glm::dvec2(point.x, point.z));
+      high = glm::max(high, glm::dvec2(point.x, point.z));
+    }
+  }
+  constexpr double room = 1.08;  // a margin; the net of points falls a little short of the surface
+  p.inset_centre = (low + high) / 2.0;
+  p.inset_half = room * (high - low) / 2.0;
+}
+
 /// All vesicles cut by the plane y = that of what the camera follows or aims at.
-render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render::Camera& camera) {
+render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render::Camera& camera, const glm::dvec3& centre) {
   render::Inset inset;
   render::CutPlane plane;
   plane.origin = sim::Vec3(0, camera.target.y, 0);
-  constexpr double largest = 0.85;  // of the box's half height in that of the picture
-  inset.centre = {camera.target.x, camera.target.z};
-  inset.half_height = camera.half_height * largest;
+  inset.centre = p.inset_centre;
+  if (p.framing.follows) inset.centre += glm::dvec2(centre.x, centre.z);
+  inset.half_height = std::max(p.inset_half.y, p.inset_half.x / render::inset_aspect);
   for (std::size_t v = 0; v < state.vesicles.size(); ++v)
     for (const render::ClosedCurve& curve : render::cut(state.vesicles[v].position, plane)) {
       render::Inset::Curve& drawn = inset.curves.emplace_back();
@@ -133,8 +152,9 @@ render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render
 
 ViewPanel make_panel(const PictureSource& source, const render::ViewParameters& view, const Painting& painting,
                  const std::vector<render::StateSummary>& summaries, const render::Captions& captions) {
-  ViewPanel p{source, view, render::frame_trajectory(summaries, view, source.settings.key_frames), 0, captions, painting, true, {}, 0};
+  ViewPanel p{source, view, render::frame_trajectory(summaries, view, source.settings.key_frames), 0, {}, {}, captions, painting, true, {}, 0};
   render::check_framing(p.framing, summaries);
+  frame_inset(p, summaries);
   for (const render::StateSummary& summary : summaries) {
     const render::FlowArrows arrows = arrows_of(p, summary);
     if (arrows.velocities.rows() > 0)
@@ -149,28 +169,28 @@ std::string laid_note(const ViewPanel& p, double time) {
   for (const double laid : p.laid)
     if (std::abs(time - laid) <= p.notice)
       return fmt::format("lines {} at {}", time < laid ? "will be laid anew" : "were laid anew",
-                         time_caption(p.source.settings.scene, laid));
+                         time_caption(p.source.settings.scene, laid, p.time_format));
   return {};
 }
 
-/// Scene time that passes in `seconds` of the movie.
-double scene_time(const PictureSource& source, double seconds) {
+/// Scene time from frame to frame.
+double time_of_frame(const PictureSource& source) {
   const render::MovieParameters& movie = source.settings.movie;
   const std::int64_t states = source.trajectory.count();
-  const double per_frame = movie.time_per_frame > 0 ? movie.time_per_frame
-                           : states > 1             ? source.trajectory.time(states - 1) / static_cast<double>(states - 1)
-                                                    : 0;
-  return seconds * movie.frame_rate * per_frame;
+  return movie.time_per_frame > 0 ? movie.time_per_frame
+         : states > 1             ? source.trajectory.time(states - 1) / static_cast<double>(states - 1)
+                                  : 0;
 }
 
 render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& state) {
   render::Frame frame;
   frame.view = p.view;
   const render::StyleRow& style = render::find_style(frame.view.style);
+  sim::Surroundings surroundings;
   for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
     const sim::Coefficients& position = state.vesicles[v].position;
     std::optional<sim::Coefficients> field;
-    if (p.painting.field) field = painted_field(studio.plans, p.painting, p.source.settings, state, v);
+    if (p.painting.field) field = painted_field(studio.plans, p.painting, p.source.settings, state, v, surroundings);
     frame.bodies.push_back(
         {render::make_mesh(studio.mesh, state.vesicles[v], field ? &*field : nullptr), p.painting.bodies[v], {}});
     if (style.cut) frame.bodies.back().cut = render::make_cut(position, frame.view.cut_normal, frame.view.cut_offset);
@@ -181,10 +201,10 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   frame.arrows = arrows_of(p, summary);
   frame.flow_lines = lines_of(studio.plans, p, state, frame.camera);
   if (frame.view.flow_profile) frame.profile = profile_of(p, frame.camera, state.time);
-  if (frame.view.inset) frame.inset = inset_of(p, state, frame.camera);
+  if (frame.view.inset) frame.inset = inset_of(p, state, frame.camera, p.framing.moment(summary).centre);
   frame.captions = p.captions;
   if (p.stamped) {
-    frame.captions.time = time_caption(p.source.settings.scene, state.time);
+    frame.captions.time = time_caption(p.source.settings.scene, state.time, p.time_format);
     frame.captions.note = laid_note(p, state.time);
   }
   return frame;
@@ -217,7 +237,7 @@ void share_legend(std::vector<Painting>& paintings, bool given) {
 
 }  // namespace
 
-Production prepare_pictures(const std::vector<PictureSource>& sources) {
+Production prepare_pictures(const std::vector<PictureSource>& sources, std::optional<double> still) {
   Production production;
   std::vector<Painting> paintings;
   std::vector<std::vector<render::StateSummary>> summaries(sources.size());
@@ -238,7 +258,9 @@ Production prepare_pictures(const std::vector<PictureSource>& sources) {
     sim::Plans plans;
     const sim::VesicleMeasures measures = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
     const double area_radius = std::sqrt(measures.area / sim::default_area);
-    paintings.push_back(plan_painting(trajectory, chosen, settings, area_radius));
+    std::optional<sim::State> only;
+    if (still) only = state_at(trajectory, *still);
+    paintings.push_back(plan_painting(trajectory, chosen, settings, area_radius, only ? &*only : nullptr));
     render::Captions c;
     c.parameters = parameter_caption(settings.scene, area_radius, measures.reduced_volume);
     c.scale_length = area_radius;
@@ -248,6 +270,7 @@ Production prepare_pictures(const std::vector<PictureSource>& sources) {
   }
   share_legend(paintings, !first.field_range.empty());
   production.hash += version();
+  if (still) production.hash += "-still";
 
   std::vector<std::string> cameras = first.views;
   if (cameras.empty()) cameras = {first.camera};
@@ -276,7 +299,11 @@ Production prepare_pictures(const std::vector<PictureSource>& sources) {
       constexpr double notice = 1.2;  // seconds
       production.panels.back().stamped = c == 0;
       production.panels.back().laid = laid[k];
-      production.panels.back().notice = scene_time(sources[k], notice);
+      const double per_frame = time_of_frame(sources[k]);
+      const std::int64_t states = sources[k].trajectory.count();
+      production.panels.back().notice = notice * sources[k].settings.movie.frame_rate * per_frame;
+      production.panels.back().time_format =
+          time_format(sources[k].settings.scene, per_frame, states > 0 ? sources[k].trajectory.time(states - 1) : 0);
     }
   return production;
 }
@@ -323,7 +350,7 @@ std::vector<render::Image> draw_stills(const sim::TrajectoryReader& trajectory, 
   for (const Still& still : stills) {
     const sim::State state = state_at(trajectory, still.time);
     plain.view.size = {still.width, still.height};
-    ViewPanel p{{trajectory, plain}, plain.view, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view), 0, {},
+    ViewPanel p{{trajectory, plain}, plain.view, render::frame_trajectory(std::vector{render::summarize(state)}, plain.view), 0, {}, {}, {},
             painting, false, {}, 0};
     const glm::dvec3 target = render::to_glm(still.target);
     p.framing.depth += glm::length(target - p.framing.target);

@@ -1,6 +1,7 @@
 // From a trajectory to single pictures: what all frames of a movie share, and the picture of one instant.
 #pragma once
 
+#include "captions.h"
 #include "fields.h"
 #include "options.h"
 
@@ -23,11 +24,14 @@ struct ViewPanel {
   render::ViewParameters view;  ///< with the panel's own size and camera
   render::Framing framing;
   double arrow_speed = 0;
+  glm::dvec2 inset_centre{0};  ///< (x, z) of the inset; from what is followed, when the camera follows
+  glm::dvec2 inset_half{1};    ///< half of what it must hold
   render::Captions captions;  ///< without the time
   Painting painting;
   bool stamped = true;  ///< shows the time and notes
   std::vector<double> laid;  ///< when material lines were laid anew on any vesicle
   double notice = 0;         ///< how long before and after that a note says so, in time of the scene
+  TimeFormat time_format = {};
 };
 
 struct Production {
@@ -38,8 +42,8 @@ struct Production {
 };
 
 /// Passes over each trajectory once. Several sources stand side by side, the views of one source in a row of their own; size
-/// and style of the whole are those of the first. Throws std::invalid_argument with one sentence when nothing could be seen.
-Production prepare_pictures(const std::vector<PictureSource>&);
+/// and style of the whole are those of the first. `still`: the time of the only picture that is drawn. Throws std::invalid_argument with one sentence when nothing could be seen.
+Production prepare_pictures(const std::vector<PictureSource>&, std::optional<double> still = {});
 
 /// What draws: one for all pictures.
 struct Studio {

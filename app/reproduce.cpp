@@ -37,10 +37,6 @@ void print_catalogue() {
 
 }  // namespace
 
-void stop_if_interrupted() {
-  if (interrupted()) throw Interrupted{};
-}
-
 int reproduce(const Options& options) {
   if (options.word.empty()) {
     print_catalogue();

@@ -49,7 +49,7 @@ Report reproduce_block_error(const Effort& effort) {
   Report report;
   report.title = "Figure 5: one block iteration against distance";
   report.setting = {"Two prolates, ν = 0.85, area 4π, long axes along x, one above the other along z (the paper's configuration is "
-                    "only pictured), in the shear flow u = z e_x, κ_b = 0.01, χΔt = 0.21.",
+                    "only pictured), in the shear flow u = z e_x, κ_b = 0.01, γ̇Δt = 0.21.",
                     fmt::format("p = {}. y = (x, σ): y* solves the coupled system (40) to 1e-11, y⁺ is one block Jacobi iteration "
                                 "from the present x_n, at rest, and the tension that solves (3) there.", p)};
   TextTable table{"Relative error ‖y⁺ − y*‖/‖y*‖ of the coefficients.", {"gap / R_0"}, {}};

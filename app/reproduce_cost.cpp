@@ -28,12 +28,12 @@ Report reproduce_cost(const Effort& effort) {
   Report report;
   report.title = "Table 5: iterations and singular integrals";
   report.setting = {prolate_setting,
-                    fmt::format("The system of bdf2 at χΔt = 0.21 (c = 0.14), with operators at shapes {} time units apart on the way "
-                                "to T = {}/χ; averages. The shapes come from bdf2 with χΔt = 0.0525 and area and volume correction: "
+                    fmt::format("The system of bdf2 at γ̇Δt = 0.21 (c = 0.14), with operators at shapes {} time units apart on the way "
+                                "to T = {}/γ̇; averages. The shapes come from bdf2 with γ̇Δt = 0.0525 and area and volume correction: "
                                 "none of them is spoilt by a step that is too long.", every * paper_step, end),
                     "Iterations of GMRES to the relative residual in the column's head, from zero or from the velocity and "
                     "tension 0.21 earlier; corrected spectral preconditioner. The paper does not state its tolerance.",
-                    "Singular integrals per unit time, counted as the paper seems to: iterations / χΔt. Here S and D are "
+                    "Singular integrals per unit time, counted as the paper seems to: iterations / γ̇Δt. Here S and D are "
                     "matrices, assembled once a step, so an iteration costs a product, not an integral."};
   TextTable table{"GMRES iterations per step.", {"λ", "p"}, {}};
   for (const double t : tolerances) table.columns.push_back(fmt::format("{}, zero guess", scientific(t, 1)));

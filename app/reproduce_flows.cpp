@@ -128,7 +128,7 @@ Report reproduce_two_vesicles(const Effort& effort) {
   Report report;
   report.title = "Figure 6: two vesicles in shear flow";
   report.setting = {"Two prolates, ν = 0.85, area 4π, long axes along x, centres ∓(1.2, 0, −0.5) (the paper's are only pictured), in the "
-                    "shear flow u = χ z e_x; λ = 10, κ_b = 0.01, p = 8, bdf2, χΔt = 0.21, 330 steps, area and volume correction on.",
+                    "shear flow u = γ̇ z e_x; λ = 10, κ_b = 0.01, p = 8, bdf2, γ̇Δt = 0.21, 330 steps, area and volume correction on.",
                     "The membranes start 0.005 R_0 apart; the near-singular rule serves all close pairs."};
 
   sim::Plans plans;
@@ -144,7 +144,7 @@ Report reproduce_two_vesicles(const Effort& effort) {
                          all[v].center[1], all[v].center[2], all[v].inclination_deg);
   }
   TextTable table{"The instants shown; x, z: centre of the first vesicle, the second is its mirror image to rounding errors.",
-                  {"", "step", "χt", "x / R_0", "z / R_0", "inclination (°)"}, {}};
+                  {"", "step", "γ̇t", "x / R_0", "z / R_0", "inclination (°)"}, {}};
   render::FigureParameters wanted;
   wanted.kind = "snapshots";
   wanted.dots_per_inch = 300;

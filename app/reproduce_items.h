@@ -1,6 +1,7 @@
 // The tables and figures of the paper, one function each.
 #pragma once
 
+#include "interrupt.h"
 #include "options.h"
 #include "progress.h"
 #include "reproduce_report.h"
@@ -16,12 +17,6 @@ struct Effort {
   const Options& options;
   Progress& progress;
 };
-
-/// Thrown by reproductions when the user interrupts.
-struct Interrupted {
-  std::filesystem::path simulated;  ///< a trajectory as far as it went; empty: none
-};
-void stop_if_interrupted();
 
 Report reproduce_upsampling(const Effort&);           // Table 2
 Report reproduce_double_layer(const Effort&);         // Table 3

@@ -10,8 +10,8 @@
 
 namespace app {
 
-const char* const prolate_setting = "One vesicle: prolate, ν = 0.85, area 4π, long axis along x, in the shear flow u = χ z "
-                                    "e_x, κ_b = 0.01, χ = 1 (lengths in R_0: the paper does not state its own).";
+const char* const prolate_setting = "One vesicle: prolate, ν = 0.85, area 4π, long axis along x, in the shear flow u = γ̇ z "
+                                    "e_x, κ_b = 0.01, γ̇ = 1 (lengths in R_0: the paper does not state its own).";
 
 std::vector<int> table_orders(const Effort& effort) {
   if (effort.quick) return {6};
@@ -75,7 +75,7 @@ StableStep stable_step(const sim::Scene& scene, sim::Plans& plans, const Ladder&
   StableStep result;
   for (int rung = ladder.first; rung <= ladder.last; ++rung) {
     result.tried = rung_step(rung);
-    effort.progress.show(0.5, fmt::format("{}, χΔt = {:.2g}", what, result.tried));
+    effort.progress.show(0.5, fmt::format("{}, γ̇Δt = {:.2g}", what, result.tried));
     result.run = run_fixed(scene, plans, result.tried, end);
     if (result.run.stable) {
       result.step = result.tried;
@@ -142,11 +142,11 @@ Report reproduce_stable_steps(const Effort& effort) {
   Report report;
   report.title = "Table 4: stable time steps";
   report.setting = {prolate_setting, pair_text,
-                    fmt::format("Stable: steps of one length to T = {}/χ without a stop (GMRES, |ΔA| ≤ 2 % and |ΔE| ≤ 50 % a "
+                    fmt::format("Stable: steps of one length to T = {}/γ̇ without a stop (GMRES, |ΔA| ≤ 2 % and |ΔE| ≤ 50 % a "
                                 "step, gap, area correction). Steps are 0.21 times powers of √2, from the largest downward.", end),
                     "Linear solves to 1e-8, aliasing tolerance 1e-4, reparametrization when due. Area and volume correction off "
                     "for the explicit scheme, as in the paper, on for the others; its effect is the second table."};
-  TextTable stable{"Largest stable χΔt on the ladder; ≥: larger steps were not tried, <: none so large is stable.",
+  TextTable stable{"Largest stable γ̇Δt on the ladder; ≥: larger steps were not tried, <: none so large is stable.",
                    order_columns(orders, {"scheme", "λ", "κ_b"}), {}};
   stable.columns.push_back("paper (p = 8, 12, 16, 24, 32)");
   TextTable errors{"Relative error of the area at T with that step and no correction; 'stops' where the run then stops.",
@@ -202,7 +202,7 @@ Report reproduce_stable_steps(const Effort& effort) {
 
   report.findings.push_back("For λ ≠ 1 the explicit scheme as printed has no double layer at all (in (43) and the update D x cancels "
                             "against r). Ours keeps that of the step before; it is shown for λ = 1 only, as in the paper.");
-  TextTable pair{"Two vesicles, λ = 10.", {"scheme", "p", "stable χΔt", "smallest gap", "the next larger step stops", "paper"}, {}};
+  TextTable pair{"Two vesicles, λ = 10.", {"scheme", "p", "stable γ̇Δt", "smallest gap", "the next larger step stops", "paper"}, {}};
   const std::vector<int> pair_orders = effort.quick ? std::vector<int>{6} : effort.full ? std::vector<int>{8, 16} : std::vector<int>{8};
   struct PairRow {
     const char *scheme, *paper;

@@ -1,5 +1,8 @@
 #include "streamlines.h"
 
+#include "interrupt.h"
+#include "scales.h"
+
 #include "render/surface.h"
 #include "sim/velocity.h"
 
@@ -116,11 +119,17 @@ class PlaneSampler {
     sim::Matrix points(static_cast<Eigen::Index>(nodes.size()), 3);
     for (std::size_t k = 0; k < nodes.size(); ++k)
       points.row(static_cast<Eigen::Index>(k)) = in_space(net.node(nodes[k])).transpose();
-    const sim::FlowSamples samples = sim::velocity_at(field_, points);
-    const sim::Matrix v = in_plane(samples.velocity);
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      net.velocity.row(nodes[k]) = v.row(static_cast<Eigen::Index>(k));
-      net.distance[nodes[k]] = samples.distance[static_cast<Eigen::Index>(k)];
+    constexpr Eigen::Index portion = 512;  // a fraction of a second: a signal is obeyed in between
+    for (Eigen::Index first = 0; first < points.rows(); first += portion) {
+      stop_if_interrupted();
+      const Eigen::Index count = std::min(portion, points.rows() - first);
+      const sim::FlowSamples samples = sim::velocity_at(field_, points.middleRows(first, count));
+      const sim::Matrix v = in_plane(samples.velocity);
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const Eigen::Index node = nodes[static_cast<std::size_t>(first + k)];
+        net.velocity.row(node) = v.row(k);
+        net.distance[node] = samples.distance[k];
+      }
     }
   }
 
@@ -164,6 +173,7 @@ FlowRequest flow_request(sim::Plans& plans, const sim::State& state, const rende
   widen(request.x, request.y.size() / 1.5);
   if (p.frame == "vesicle") request.frame_velocity = frame_velocity(plans, state);
   request.spacing = p.spacing * length;
+  request.length = length;
   request.with_speed = p.background == "speed";
   return request;
 }
@@ -190,8 +200,14 @@ render::FlowPicture flow_picture(sim::Plans& plans, const sim::Scene& scene, con
     }
   render::StreamlineOptions options;
   options.spacing = request.spacing;
-  picture.lines = render::streamlines([&](const Vec2& p) { return sampler(p); }, request.x, request.y, options, seeds);
+  options.rest = natural_scales(scene, state, request.length).rounding_of(sim::FieldScale::velocity);
+  const auto flow = [&](const Vec2& p) {
+    stop_if_interrupted();
+    return sampler(p);
+  };
+  picture.lines = render::streamlines(flow, request.x, request.y, options, seeds);
   if (request.with_speed) std::tie(picture.speed, picture.speed_window) = sampler.speeds();
+  if (request.with_speed && picture.speed.maxCoeff() <= options.rest) picture.speed.setZero();
   const sim::Vec3& o = request.plane.origin;
   const sim::Vec3& n = request.plane.normal;
   const sim::Vec3& u = request.frame_velocity;

@@ -13,9 +13,11 @@ struct FlowRequest {
   render::Range x, y;        ///< window in the plane, lengths of the scene
   sim::Vec3 frame_velocity = sim::Vec3::Zero();  ///< subtracted everywhere
   double spacing = 0.2;      ///< of the lines, length
+  double length = 1;         ///< area radius: with the scene it tells which speeds are rounding
   bool with_speed = true;    ///< also speeds on a net, as a background
 };
 
+/// Throws Interrupted at the first signal: fine spacings take minutes.
 render::FlowPicture flow_picture(sim::Plans&, const sim::Scene&, const sim::State&, const FlowRequest&);
 
 /// Mean of the velocities of the vesicles' centroids.

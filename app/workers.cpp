@@ -5,11 +5,13 @@
 #include "progress.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <set>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -23,12 +25,27 @@ namespace {
 
 std::vector<std::string> words_of(const Options& options, const std::filesystem::path& folder, int shard) {
   std::vector<std::string> words{"tanktread", "render"};
-  for (const std::filesystem::path& input : options.inputs) words.push_back(input.string());
   words.insert(words.end(), {"-q", "-o", folder.string(), "--shard", fmt::format("{}/{}", shard, options.jobs), "--gl",
                              options.gl});
   for (const std::string& change : options.set) words.insert(words.end(), {"--set", change});
   if (!options.shader_dir.empty()) words.insert(words.end(), {"--shader-dir", options.shader_dir.string()});
+  words.emplace_back("--");  // a name may begin with a dash
+  for (const std::filesystem::path& input : options.inputs) words.push_back(input.string());
   return words;
+}
+
+/// A frame takes its place as a new file, which has another number on the disk than the one it replaces.
+using FrameFile = std::pair<std::string, ino_t>;
+std::set<FrameFile> frame_files(const std::filesystem::path& frames) {
+  std::set<FrameFile> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(frames, error)) {
+    struct stat status {};
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.') && name.ends_with(".png") && ::stat(entry.path().c_str(), &status) == 0)
+      files.emplace(name, status.st_ino);
+  }
+  return files;
 }
 
 /// The processes at work. None is left when they go out of scope: they finish the frame under way, and are waited for.
@@ -68,7 +85,8 @@ class Children {
 
 }  // namespace
 
-bool draw_in_processes(const Options& options, const std::filesystem::path& folder) {
+std::optional<std::int64_t> draw_in_processes(const Options& options, const std::filesystem::path& folder) {
+  const std::set<FrameFile> before = frame_files(folder / "frames");
   std::vector<std::string> environment;
   for (char** entry = environ; *entry; ++entry)
     if (!std::string_view(*entry).starts_with("LP_NUM_THREADS=")) environment.emplace_back(*entry);
@@ -92,10 +110,12 @@ bool draw_in_processes(const Options& options, const std::filesystem::path& fold
     progress.show(1 - static_cast<double>(children.running()) / options.jobs, fmt::format("{} processes", options.jobs));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  if (interrupted()) return false;
+  if (interrupted()) return {};
   if (failed) throw std::runtime_error(fmt::format("not all frames could be drawn; those that are complete are kept in '{}'",
                                                    (folder / "frames").string()));
-  return true;
+  std::int64_t drawn = 0;
+  for (const FrameFile& file : frame_files(folder / "frames")) drawn += !before.contains(file);
+  return drawn;
 }
 
 }  // namespace app

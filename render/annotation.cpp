@@ -122,7 +122,7 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profil
 
 void draw_inset(Image& image, const Font& font, const Inset& inset) {
   const Sizes s = sizes_of(image);
-  const double height = 0.21 * image.height, width = 1.35 * height, inner = 0.5 * s.margin;
+  const double height = 0.21 * image.height, width = inset_aspect * height, inner = 0.5 * s.margin;
   const double left = image.width - inner - width, top = inner;
   const double scale = 0.5 * height / inset.half_height;
   const glm::dvec2 middle(left + 0.5 * width, top + 0.5 * height);

@@ -12,6 +12,8 @@ void draw_triad(Image& image, const Font& font, const Camera& camera);
 /// Arrows between a vertical line and the profile, at the left edge of the picture.
 void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profile);
 
+/// Width of the inset's box in its heights.
+inline constexpr double inset_aspect = 1.35;
 /// The (x, z) cross-section in a box in the upper right corner.
 void draw_inset(Image& image, const Font& font, const Inset& inset);
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 #include <stdexcept>
 
 namespace render {
@@ -70,23 +71,27 @@ StateSummary summarize(const sim::State& state) {
   const Eigen::Index each = latitudes * longitudes;
   summary.points.reserve(static_cast<std::size_t>(each) * state.vesicles.size());
   double area = 0;
+  dvec3 moment(0);  // of all, about the first
   for (const sim::VesicleState& vesicle : state.vesicles) {
     const sim::FirstDerivatives x = sim::sample_grid(vesicle.position, theta, phi);
+    const dvec3 origin = to_glm(x.value.row(0));  // far from the scene's own, digits would be lost
     dvec3 sum(0);
     double own = 0;
     for (Eigen::Index i = 0; i < each; ++i) {
-      const dvec3 p = to_glm(x.value.row(i)), normal = glm::cross(to_glm(x.t.row(i)), to_glm(x.f.row(i)));
+      const dvec3 normal = glm::cross(to_glm(x.t.row(i)), to_glm(x.f.row(i)));
       const double weight = glm::length(normal);
-      sum += weight * p;
+      sum += weight * (to_glm(x.value.row(i)) - origin);
       own += weight;
-      summary.points.emplace_back(p);
       summary.areas.emplace_back(step * step * normal);
     }
-    summary.centroid += sum;
+    const dvec3 centroid = own > 0 ? origin + sum / own : origin;
+    for (Eigen::Index i = 0; i < each; ++i) summary.points.emplace_back(to_glm(x.value.row(i)) - centroid);
+    summary.centroids.push_back(centroid);
+    moment += own * (centroid - summary.centroids.front());
     area += own;
-    summary.centroids.push_back(own > 0 ? sum / own : sum);
   }
-  if (area > 0) summary.centroid /= area;
+  if (!summary.centroids.empty()) summary.centroid = summary.centroids.front();
+  if (area > 0) summary.centroid += moment / area;
   return summary;
 }
 
@@ -180,10 +185,9 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
   const glm::dmat3 to_axes = glm::transpose(from_axes);
   // What the picture must hold: all points, or those of the vesicle that is followed.
   const auto shown = [&](const StateSummary& state) {
-    std::span<const glm::vec3> points = state.points;
-    if (framing.vesicle < 0) return points;
-    const std::size_t each = points.size() / vesicles;
-    return points.subspan(each * static_cast<std::size_t>(framing.vesicle), each);
+    if (framing.vesicle < 0) return std::views::iota(std::size_t{0}, state.points.size());
+    const std::size_t each = state.points.size() / vesicles, first = each * static_cast<std::size_t>(framing.vesicle);
+    return std::views::iota(first, first + each);
   };
 
   Extent centroids, about_centroid;
@@ -192,8 +196,8 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
     const dvec3 centroid = to_axes * framing.moment(state).centre;
     centroids.add(centroid);
     Extent now;
-    for (const dvec3 point : shown(state)) {
-      const dvec3 p = to_axes * point;
+    for (const std::size_t k : shown(state)) {
+      const dvec3 p = to_axes * state.point(k);
       now.add(p);
       about_centroid.add(p - centroid);
     }
@@ -208,16 +212,15 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
   if (!framing.follows) {
     all = Extent{};
     for (const StateSummary& state : states)
-      for (const dvec3 point : state.points) all.add(to_axes * point);
+      for (std::size_t k = 0; k < state.points.size(); ++k) all.add(to_axes * state.point(k));
   }
   const dvec3 centre = view.target ? to_glm(*view.target) : from_axes * all.centre();
   (framing.follows ? framing.offset : framing.target) = centre;
-  framing.depth = std::max(all.size().z / 2, 1e-3);
-  if (framing.turns()) framing.depth = std::max(glm::length(all.size()) / 2, 1e-3);
+  framing.depth = (framing.turns() ? glm::length(all.size()) : all.size().z) / 2;
   if (framing.vesicle >= 0 || view.target || view.eye) {  // others may lie farther off
     for (const StateSummary& state : states)
-      for (const dvec3 point : state.points)
-        framing.depth = std::max(framing.depth, glm::distance(point, framing.follows ? framing.moment(state).centre + framing.offset
+      for (std::size_t k = 0; k < state.points.size(); ++k)
+        framing.depth = std::max(framing.depth, glm::distance(state.point(k), framing.follows ? framing.moment(state).centre + framing.offset
                                                                                      : framing.target));
   }
   if (view.eye) {
@@ -228,18 +231,19 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
   // The picture must hold every point; a nearer one looks larger.
   const double margin = framing.vesicle >= 0 ? neighbourhood : 1;
   const double tx = tangent_of_half_angle * framing.aspect * fill_width / margin, ty = tangent_of_half_angle * fill_height / margin;
-  double distance = 1e-3, half_height = 1e-3;
+  double distance = 0, half_height = 0;
   for (const StateSummary& state : states) {
     const ViewAxes axes = framing.axes_at(state.time);
     const glm::dmat3 to_picture = glm::transpose(glm::dmat3(axes.right, axes.up, axes.back));
-    for (const dvec3 point : shown(state)) {
+    for (const std::size_t k : shown(state)) {
       const dvec3 origin = framing.follows ? framing.moment(state).centre + framing.offset : framing.target;
-      const dvec3 p = to_picture * (point - origin);
+      const dvec3 p = to_picture * (state.point(k) - origin);
       distance = std::max({distance, p.z + std::abs(p.x) / tx, p.z + std::abs(p.y) / ty});
       half_height = std::max({half_height, margin * std::abs(p.y) / fill_height,
                               margin * std::abs(p.x) / (fill_width * framing.aspect)});
     }
   }
+  if (!(distance > 0 && half_height > 0)) distance = half_height = 1;  // a point; any picture of it will do
   framing.distance = distance / view.zoom;
   framing.half_height = framing.perspective ? framing.distance * tangent_of_half_angle : half_height / view.zoom;
   return framing;
@@ -249,8 +253,8 @@ void check_framing(const Framing& framing, std::span<const StateSummary> states)
   bool seen = false;
   for (const StateSummary& state : states) {
     const Camera camera = make_camera(framing, framing.moment(state));
-    for (const glm::vec3& point : state.points) {
-      const glm::vec4 clip = camera.projection * (camera.view * glm::vec4(point, 1));
+    for (std::size_t k = 0; k < state.points.size(); ++k) {
+      const glm::dvec4 clip = camera.clip(state.point(k));
       seen = seen || (clip.w > 0 && std::max(std::abs(clip.x), std::abs(clip.y)) < clip.w);
     }
     if (!framing.perspective || state.areas.size() != state.points.size()) continue;
@@ -259,8 +263,9 @@ void check_framing(const Framing& framing, std::span<const StateSummary> states)
     for (std::size_t v = 0; v < vesicles; ++v) {
       double angle = 0;
       for (std::size_t i = v * each; i < (v + 1) * each; ++i) {
-        const dvec3 away = dvec3(state.points[i]) - camera.eye;
-        angle += glm::dot(away, dvec3(state.areas[i])) / std::max(std::pow(glm::length(away), 3), 1e-12);
+        const dvec3 away = state.point(i) - camera.eye;
+        const double distance = glm::length(away);
+        if (distance > 0) angle += glm::dot(away / distance, dvec3(state.areas[i]) / distance / distance);
       }
       if (angle > 2 * std::numbers::pi)
         throw std::invalid_argument(fmt::format("the camera is inside vesicle {} at t = {:.6g}; {}", v, state.time,
@@ -287,17 +292,17 @@ Camera make_camera(const Framing& framing, const Moment& moment) {
   const double distance = framing.perspective ? framing.distance / zoom : 2 * reach;
   const double near = std::max(distance - reach, 0.02 * distance), far = distance + reach;
   camera.eye = camera.target + distance * axes.back;
-  camera.view = glm::lookAt(camera.eye, camera.target, axes.up);
-  const double w = camera.half_width, h = camera.half_height;
+  const double unit = camera.half_height, w = framing.aspect;
+  camera.view = glm::lookAt(distance / unit * axes.back, dvec3(0), axes.up);
   const double share = near / distance;  // of the near plane's size in that of the target
-  camera.projection = framing.perspective ? glm::frustum(-w * share, w * share, -h * share, h * share, near, far)
-                                          : glm::ortho(-w, w, -h, h, near, far);
+  camera.projection = framing.perspective ? glm::frustum(-w * share, w * share, -share, share, near / unit, far / unit)
+                                          : glm::ortho(-w, w, -1.0, 1.0, near / unit, far / unit);
   return camera;
 }
 
 glm::dvec2 Camera::picture_place(const dvec3& point) const {
-  const glm::vec4 clip = projection * (view * glm::vec4(point, 1));
-  return glm::dvec2(clip) / static_cast<double>(clip.w);
+  const glm::dvec4 seen = clip(point);
+  return glm::dvec2(seen) / seen.w;
 }
 
 namespace {

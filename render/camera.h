@@ -32,8 +32,11 @@ struct StateSummary {
   double time = 0;
   glm::dvec3 centroid{0};              ///< of the area of all vesicles
   std::vector<glm::dvec3> centroids;   ///< of each
-  std::vector<glm::vec3> points;       ///< as many of each vesicle, one vesicle after the other
+  /// As many of each vesicle, one vesicle after the other; from the centroid of its own, so that single precision will do.
+  std::vector<glm::vec3> points;
   std::vector<glm::vec3> areas;        ///< outward normal times the share of the area that a point stands for
+
+  glm::dvec3 point(std::size_t k) const { return centroids[k / (points.size() / centroids.size())] + glm::dvec3(points[k]); }
 };
 StateSummary summarize(const sim::State& state);
 
@@ -83,9 +86,10 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
 /// vesicle at any of these instants.
 void check_framing(const Framing& framing, std::span<const StateSummary> states);
 
-/// The matrices of one frame.
+/// The matrices of one frame. Single precision begins at place(): there every scene is as large as its picture and lies at
+/// the origin, in whatever unit and however far from its own origin it is.
 struct Camera {
-  glm::mat4 view{1};                       ///< scene -> eye: x right, y up, z toward the viewer
+  glm::mat4 view{1};                       ///< place -> eye: x right, y up, z toward the viewer
   glm::mat4 projection{1};                 ///< eye -> clip
   glm::dvec3 target{0};                    ///< in the middle of the picture
   glm::dvec3 eye{0};                       ///< orthographic: far off
@@ -93,6 +97,11 @@ struct Camera {
   bool perspective = true;
   bool follows = false;  ///< moves with the vesicles
 
+  /// A point of the scene from the target, in half heights of the picture.
+  glm::dvec3 place(const glm::dvec3& point) const { return (point - target) / half_height; }
+  glm::dvec4 clip(const glm::dvec3& point) const {
+    return glm::dmat4(projection) * (glm::dmat4(view) * glm::dvec4(place(point), 1));
+  }
   /// Where a point of the scene is seen: -1..1 from left to right and from bottom to top.
   glm::dvec2 picture_place(const glm::dvec3& point) const;
 };

@@ -16,11 +16,12 @@ struct Drawing {
   double width = 0, height = 0;
   std::function<void(cairo_t*, const Font&)> paint;
   Colour ground = white;
-  double dots_per_inch = 200;  ///< of the PNG
+  double dots_per_inch = 300;  ///< of the PNG
 };
 
 /// Each throws std::runtime_error with path and reason.
-/// The same drawing gives the same bytes: no dates, no names of machines, text as paths.
+/// The same drawing gives the same bytes: no dates, no names of machines. The PNG says its dots per inch; the PDF carries the
+/// letters that it uses; the SVG names the font and leaves its texts above everything else.
 void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text = {},
                        const sim::FileWriter& write = sim::write_file);
 void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write = sim::write_file);

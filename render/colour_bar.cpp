@@ -22,8 +22,8 @@ double widest_tick(const Font& font, double size, const Legend& legend) {
   cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
   cairo_t* cairo = cairo_create(surface);
   double widest = 0;
-  for (const double value : bar_ticks(legend.low, legend.high))
-    widest = std::max(widest, text_width(cairo, font, size, number_text(value)));
+  for (const std::string& text : number_texts(bar_ticks(legend.low, legend.high)))
+    widest = std::max(widest, text_width(cairo, font, size, text));
   cairo_destroy(cairo);
   cairo_surface_destroy(surface);
   return widest;
@@ -38,7 +38,10 @@ std::vector<double> bar_ticks(double low, double high) {
   double step = 10 * power;
   for (const double factor : {5.0, 2.5, 2.0, 1.0})
     if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
-  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push_back(k == 0 ? 0 : k * step);
+  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
+    if (k + 1 == k || (!ticks.empty() && !(k * step > ticks.back()))) break;  // finer than double precision
+    ticks.push_back(k == 0 ? 0 : k * step);
+  }
   return ticks;
 }
 
@@ -98,13 +101,16 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool 
             cairo_line_to(cairo, middle, legend.below ? bottom + point : bottom);
             cairo_close_path(cairo);
             cairo_stroke(cairo);
-            for (const double value : bar_ticks(legend.low, legend.high)) {
+            const std::vector<double> ticks = bar_ticks(legend.low, legend.high);
+            const std::vector<std::string> texts = number_texts(ticks);
+            for (std::size_t k = 0; k < ticks.size(); ++k) {
+              const double value = ticks[k];
               const double y = bottom - (value - legend.low) / (legend.high - legend.low) * bar.height;
               set_colour(cairo, ink);
               cairo_move_to(cairo, bar.left + bar.width, y);
               cairo_line_to(cairo, bar.left + bar.width + s.tick, y);
               cairo_stroke(cairo);
-              draw_text_on_picture(cairo, font, s.text, bar.left + bar.width + s.tick + s.gap, y + 0.36 * s.text, number_text(value));
+              draw_text_on_picture(cairo, font, s.text, bar.left + bar.width + s.tick + s.gap, y + 0.36 * s.text, texts[k]);
             }
             // centred above the bar as far as the edge of the picture allows
             const double width = text_width(cairo, font, 1.1 * s.text, legend.label);

@@ -3,6 +3,7 @@
 #include "context_back_ends.h"
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 #include <charconv>
 #include <stdexcept>
@@ -68,7 +69,17 @@ GlChoice parse_gl_choice(std::string_view word) {
   throw std::invalid_argument("unknown OpenGL back end '" + std::string(word) + "' (known: " + known + ")");
 }
 
+void require_memory(std::size_t bytes) {
+  // Address space alone: it is given back at once, and pages are never touched.
+  void* probe = ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (probe == MAP_FAILED)
+    throw std::runtime_error("there is not enough memory to draw: about " + std::to_string(bytes >> 20) + " MiB more are needed");
+  ::munmap(probe, bytes);
+}
+
 GlContext::GlContext(const GlChoice& choice) {
+  constexpr std::size_t driver = std::size_t{560} << 20;  // its libraries, its compiler and the stacks of its threads
+  require_memory(driver);
   try {
     back_end_ = open(choice);
   } catch (const GlUnavailable& e) {

@@ -34,6 +34,10 @@ struct GlInformation {
   bool software = false;  ///< draws on the processor: pictures are the same on every machine
 };
 
+/// Throws std::runtime_error with one sentence when so much address space is not to be had. Drivers do not survive that
+/// themselves: they crash, or tell on standard error what nobody understands.
+void require_memory(std::size_t bytes);
+
 /// A context and its functions. Current on the thread that opened it; make_current() before drawing when there are
 /// several.
 class GlContext {

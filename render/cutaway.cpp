@@ -11,7 +11,7 @@ Cut make_cut(const sim::Coefficients& position, const sim::Vec3& normal, double 
   plane.origin = volume_moments(position).centroid + offset * plane.normal;
   plane.right = plane.normal.unitOrthogonal();
   plane.up = plane.normal.cross(plane.right);
-  Cut result{to_glm(plane.normal), plane.normal.dot(plane.origin), {}};
+  Cut result{to_glm(plane.normal), to_glm(plane.origin), {}};
   constexpr int latitudes = 80;  // corners of the rim stay below a tenth of a pixel
   for (const ClosedCurve& curve : cut(position, plane, latitudes)) {
     std::vector<glm::dvec3>& edge = result.edges.emplace_back();

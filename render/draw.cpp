@@ -130,6 +130,8 @@ void Renderer::begin(const Frame& frame) {
   const int width = frame.view.size[0] * frame.view.supersampling, height = frame.view.size[1] * frame.view.supersampling;
   if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height) {
     framebuffer_.reset();
+    constexpr std::size_t of_sample = 16;  // bytes: colour and depth, the copy that is read back, and as much again for the driver
+    require_memory(of_sample * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     framebuffer_.emplace(gl, width, height);
   }
   framebuffer_->bind();
@@ -178,8 +180,8 @@ void Renderer::draw_arrows(const Frame& frame) {
     const double shown = flow.shown * clear_of_captions(camera.picture_place(middle)) * beside *
                          clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
     if (shown <= 0) continue;
-    starts.emplace_back(middle, shown);
-    vectors.emplace_back(arrow);
+    starts.emplace_back(glm::vec3(camera.place(middle)), shown);
+    vectors.emplace_back(arrow / camera.half_height);
   }
   if (starts.empty()) return;
   const Gl& gl = context_.gl();
@@ -189,7 +191,7 @@ void Renderer::draw_arrows(const Frame& frame) {
   set_ground(p, frame);
   p.set("u_colour", linear(arrow_colour));
   p.set("u_height", static_cast<float>(framebuffer_->height()));
-  p.set("u_thickness", static_cast<float>(arrow_thickness * camera.half_height));
+  p.set("u_thickness", static_cast<float>(arrow_thickness));
   VertexArray& shape = rests ? beads_ : arrows_;
   shape.attribute(2, starts, 1);
   if (!rests) shape.attribute(3, vectors, 1);

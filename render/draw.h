@@ -38,11 +38,12 @@ class Renderer {
   void draw_flow_lines(const Frame&);
   /// A strip along the points on the picture, `reach` samples to both sides, moved `nearer` to the eye.
   void draw_ribbon(const Camera&, std::span<const glm::dvec3> points, bool closed, float reach, double nearer);
-  void upload(const Body&);
+  void upload(const Body&, const Camera&);
   void draw_body(const Frame&, const Body&);
   /// The core hides what lies behind; the edge is thirds of a sample that let it through.
   enum class OutlinePart { core, edge };
-  void draw_outline(const Frame&, const Body&, OutlinePart);
+  std::vector<std::uint32_t> rim_of(const Frame&, const Body&) const;
+  void draw_outline(const Frame&, const Body&, const std::vector<std::uint32_t>& rim, OutlinePart);
   Image finish(const Frame&);
 
   GlContext context_;

@@ -13,9 +13,22 @@ namespace render {
 namespace {
 
 constexpr double tracer_radius = 0.088;  // area radii
+constexpr double edge_step = 1.0 / 3;    // samples between the hulls of an outline
 
 Colour outline_colour(const Body& body) {
   return {0.10 + 0.08 * body.colour.r, 0.11 + 0.08 * body.colour.g, 0.14 + 0.08 * body.colour.b};
+}
+
+// Single precision holds these whatever the unit of the scene.
+std::vector<glm::vec3> places(const Mesh& mesh, const Camera& camera) {
+  std::vector<glm::vec3> all;
+  all.reserve(mesh.position.size());
+  for (const glm::dvec3& p : mesh.position) all.emplace_back(camera.place(p));
+  return all;
+}
+
+glm::vec3 eye_place(const Camera& camera, const glm::dvec3& point) {
+  return camera.view * glm::vec4(glm::vec3(camera.place(point)), 1);
 }
 
 // From pole to pole of the label, so that the dots are as dense as on the bar. In half octaves: a camera that moves does not
@@ -28,8 +41,8 @@ double sign_dot_rows(const Frame& frame, const Body& body) {
 
 }  // namespace
 
-void Renderer::upload(const Body& body) {
-  bodies_.attribute(0, body.mesh.position);
+void Renderer::upload(const Body& body, const Camera& camera) {
+  bodies_.attribute(0, places(body.mesh, camera));
   bodies_.attribute(1, body.mesh.normal);
   if (uploaded_plan_ == body.mesh.plan) return;
   bodies_.indices(body.mesh.plan->indices());
@@ -49,15 +62,16 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
       throw std::invalid_argument("the style 'field' needs a legend, and a scalar on every mesh");
     const double low = frame.legend->low, width = frame.legend->high - low;
     std::vector<float> shares;
-    for (const float value : body.mesh.scalar) shares.push_back(static_cast<float>((value - low) / width));
+    for (const double value : body.mesh.scalar) shares.push_back(static_cast<float>((value - low) / width));
     bodies_.attribute(6, shares);
     palette_.bind();
     p.set("u_map", 0);
     if (dotted) p.set("u_dot_rows", static_cast<float>(sign_dot_rows(frame, body)));
   }
   if (style.cut) {
-    const Cut cut = body.cut.value_or(Cut{{0, 0, 0}, 1, {}});  // of nothing
-    p.set("u_cut", std::array{glm::vec4(cut.normal, -cut.height)});
+    glm::vec4 plane(0, 0, 0, -1);  // of nothing
+    if (body.cut) plane = glm::vec4(body.cut->normal, -glm::dot(body.cut->normal, frame.camera.place(body.cut->point)));
+    p.set("u_cut", std::array{plane});
     p.set("u_contour_width", samples(frame.view, frame.view.outline_width, 1.0));
   }
   const glm::vec3 colour = linear(style.own_colour ? body.colour : white);
@@ -66,28 +80,32 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
   p.set("u_contour", vector_of(outline_colour(body)));
   p.set("u_half_width", samples(frame.view, frame.view.line_width / 2, 0.42));
   if (style.tracers && frame.view.tracers && !tracers.empty()) {
-    std::vector<glm::vec4> places;
+    std::vector<glm::vec4> dots;
     for (const Mesh::Tracer& t : tracers)
-      places.emplace_back(glm::vec3(frame.camera.view * glm::vec4(t.position, 1)), t.bright ? 1.0F : 0.0F);
-    p.set("u_tracer", places);
+      dots.emplace_back(eye_place(frame.camera, t.position), t.bright ? 1.0F : 0.0F);
+    p.set("u_tracer", dots);
     p.set("u_tracer_bright", linear(tracer_bright));
     p.set("u_tracer_dark", linear(tracer_dark));
     bodies_.attribute(3, nearest_tracers(body.mesh));
-    p.set("u_tracer_radius", static_cast<float>(tracer_radius * body.mesh.area_radius));
+    p.set("u_tracer_radius", static_cast<float>(tracer_radius * body.mesh.area_radius / frame.camera.half_height));
   }
-  upload(body);
+  upload(body, frame.camera);
   bodies_.attribute(2, frame.view.lines == "grid" ? body.mesh.plan->parameters() : body.mesh.label);
   gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(body.mesh.plan->indices().size()), GL_UNSIGNED_INT, nullptr);
 }
 
-void Renderer::draw_outline(const Frame& frame, const Body& body, OutlinePart part) {
+std::vector<std::uint32_t> Renderer::rim_of(const Frame& frame, const Body& body) const {
+  const double widest = samples(frame.view, frame.view.outline_width, 1.0) + edge_step, slack = 1.5;  // samples
+  return rim_triangles(body.mesh, frame.camera, 2 * (widest + slack) / framebuffer_->height());
+}
+
+void Renderer::draw_outline(const Frame& frame, const Body& body, const std::vector<std::uint32_t>& rim, OutlinePart part) {
   const Gl& gl = context_.gl();
   const Program& p = program("outline", "");
-  const std::vector<std::uint32_t> rim = rim_triangles(body.mesh, frame.camera);
   p.use();
   set_camera(p, frame.camera);
   p.set("u_colour", vector_of(outline_colour(body)));
-  hulls_.attribute(0, body.mesh.position);
+  hulls_.attribute(0, places(body.mesh, frame.camera));
   hulls_.attribute(1, body.mesh.normal);
   hulls_.indices(rim);
   gl.CullFace(GL_FRONT);
@@ -98,10 +116,10 @@ void Renderer::draw_outline(const Frame& frame, const Body& body, OutlinePart pa
     p.set("u_alpha", static_cast<float>(share));
     gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(rim.size()), GL_UNSIGNED_INT, nullptr);
   };
-  if (part == OutlinePart::core) hull(-1.0 / 3, 1);
+  if (part == OutlinePart::core) hull(-edge_step, 1);
   if (part == OutlinePart::edge) {
     hull(0, 1.0 / 2);
-    hull(1.0 / 3, 1.0 / 3);
+    hull(edge_step, 1.0 / 3);
   }
   gl.CullFace(GL_BACK);
 }
@@ -116,7 +134,7 @@ void Renderer::draw_ghosts(const Frame& frame) {
   double radius = 0;
   for (const Body& body : frame.bodies) {
     const auto append = [](auto& all, const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
-    append(positions, body.mesh.position);
+    append(positions, places(body.mesh, frame.camera));
     append(normals, body.mesh.normal);
     append(labels, frame.view.lines == "grid" ? body.mesh.plan->parameters() : body.mesh.label);
     colours.resize(positions.size(), linear(style.own_colour ? body.colour : white));
@@ -129,7 +147,7 @@ void Renderer::draw_ghosts(const Frame& frame) {
       const auto place = [&](float k) {
         if (k < 0) return glm::vec4(0, 0, 0, -1);
         const Mesh::Tracer& t = body.mesh.tracers[static_cast<std::size_t>(k)];
-        return glm::vec4(glm::vec3(frame.camera.view * glm::vec4(t.position, 1)), t.bright ? 1 : 0);
+        return glm::vec4(eye_place(frame.camera, t.position), t.bright ? 1 : 0);
       };
       for (const glm::vec2& nearest : nearest_tracers(body.mesh)) {
         dots.push_back(place(nearest.x));
@@ -153,7 +171,7 @@ void Renderer::draw_ghosts(const Frame& frame) {
     ghosts_.attribute(4, next_dots);
     p.set("u_tracer_bright", linear(tracer_bright));
     p.set("u_tracer_dark", linear(tracer_dark));
-    p.set("u_tracer_radius", static_cast<float>(tracer_radius * radius));
+    p.set("u_tracer_radius", static_cast<float>(tracer_radius * radius / frame.camera.half_height));
   }
   const std::vector<std::uint32_t> triangles = back_to_front(frame.bodies, frame.camera);
   ghosts_.indices(triangles);
@@ -173,8 +191,8 @@ void Renderer::draw_ribbon(const Camera& camera, std::span<const glm::dvec3> poi
   if (n < 2) return;
   std::vector<glm::dvec4> clips;
   for (const glm::dvec3& point : points) {
-    glm::dvec4 eye = glm::dmat4(camera.view) * glm::dvec4(point, 1);
-    eye.z += nearer;
+    glm::dvec4 eye = glm::dmat4(camera.view) * glm::dvec4(camera.place(point), 1);
+    eye.z += nearer / camera.half_height;
     clips.push_back(glm::dmat4(camera.projection) * eye);
   }
   std::vector<glm::vec4> strip;
@@ -218,7 +236,7 @@ void Renderer::draw_flow_lines(const Frame& frame) {
       for (const glm::dvec3& corner : {line.points[k] - 0.5 * head * along + 0.36 * head * side,
                                        line.points[k] - 0.5 * head * along - 0.36 * head * side,
                                        line.points[k] + 0.5 * head * along})
-        corners.push_back(frame.camera.projection * (frame.camera.view * glm::vec4(corner, 1)));
+        corners.emplace_back(frame.camera.clip(corner));
       ribbons_.attribute(0, corners);
       ribbons_.attribute(1, std::vector<float>(3, 0.0F));
       gl.DrawArrays(GL_TRIANGLES, 0, 3);
@@ -270,9 +288,12 @@ void Renderer::draw_bodies(const Frame& frame) {
     return draw_flow_lines(frame);
   }
   const bool outlined = frame.view.outline_width > 0;
+  std::vector<std::vector<std::uint32_t>> rims;
   for (const Body& body : frame.bodies) {
     draw_body(frame, body);
-    if (outlined) draw_outline(frame, body, OutlinePart::core);
+    if (!outlined) continue;
+    rims.push_back(rim_of(frame, body));
+    draw_outline(frame, body, rims.back(), OutlinePart::core);
   }
   if (!outlined) return;
   // Two hulls more make thirds of a sample at the outer edge. They let through what lies behind: all of that is there now.
@@ -280,7 +301,7 @@ void Renderer::draw_bodies(const Frame& frame) {
   gl.Enable(GL_BLEND);
   gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   gl.DepthMask(GL_FALSE);
-  for (const Body& body : frame.bodies) draw_outline(frame, body, OutlinePart::edge);
+  for (std::size_t k = 0; k < rims.size(); ++k) draw_outline(frame, frame.bodies[k], rims[k], OutlinePart::edge);
   gl.DepthMask(GL_TRUE);
   gl.Disable(GL_BLEND);
 }

@@ -34,9 +34,11 @@ const FigureRow& find_figure(std::string_view name) {
                               sim::suggestion(name, sim::row_names(figures())));
 }
 
+double dots_per_inch(const FigureParameters& p) { return p.dots_per_inch.value_or(p.unit == "px" ? 200 : 300); }
+
 Page page_of(const FigureParameters& p) {
   Page page{find_theme(p.theme), 0, 0};
-  const double points = p.unit == "px" ? 72 / p.dots_per_inch : 72 / 25.4;
+  const double points = p.unit == "px" ? 72 / dots_per_inch(p) : 72 / 25.4;
   if (p.size.size() > 2) throw std::invalid_argument("a figure's size is a width, or a width and a height");
   if (!p.size.empty()) page.width = p.size[0] * points;
   if (p.size.size() == 2) page.height = p.size[1] * points;
@@ -56,6 +58,10 @@ std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, c
   if (count == 0) return chosen;
   if (!parameters.times.empty()) {
     for (const double time : parameters.times) {
+      const double end = state_times.back();
+      if (!(time >= 0 && time <= end * (1 + 1e-9)))
+        throw std::invalid_argument(
+            fmt::format("the trajectory goes from t = 0 to t = {:.6g}; there is no t = {:.6g} for figure.times", end, time));
       const auto nearest = std::min_element(state_times.begin(), state_times.end(),
                                             [&](double a, double b) { return std::abs(a - time) < std::abs(b - time); });
       chosen.push_back(static_cast<std::size_t>(nearest - state_times.begin()));
@@ -97,8 +103,19 @@ std::pair<std::string, std::string> axis_names(const CutPlane& plane) {
 }
 
 std::string time_text(const FigureInput& input, double time) {
-  const double digits = std::abs(time) < 1 ? 1e4 : 1e2;
-  return fmt::format("{} = {}", input.time_symbol, number_text(std::round(time * digits) / digits));
+  if (time == 0) return fmt::format("{} = 0", input.time_symbol);
+  // Four digits, two after the point for numbers above 1; more where instants lie closer.
+  const double size = std::floor(std::log10(std::abs(time)));
+  double place = std::abs(time) < 1 ? size - 3 : std::max(size - 9, -2.0);
+  std::vector<double> times;
+  for (const sim::State& state : input.states) times.push_back(input.time_factor * state.time);
+  std::sort(times.begin(), times.end());
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (times[k] > times[k - 1]) place = std::min(place, std::floor(std::log10(times[k] - times[k - 1])) - 1);
+  place = std::max(place, size - 11);  // beyond it rounding errors of sums of steps
+  const double unit = std::pow(10.0, std::abs(place));
+  const double shown = place < 0 ? std::round(time * unit) / unit : std::round(time / unit) * unit;
+  return fmt::format("{} = {}", input.time_symbol, number_text(shown, 12));
 }
 
 std::string letter(std::size_t k) {

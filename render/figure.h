@@ -62,7 +62,7 @@ struct FigureInput {
   std::vector<Plot> plots;          ///< of kinds that want plots
   std::vector<Image> stills;        ///< of "snapshots": the pictures that sheet_layout() asks for
   FlowPicture flow;                 ///< of "streamlines"
-  std::string time_symbol = "t";    ///< "γ̇t", "χt"
+  std::string time_symbol = "t";    ///< "γ̇t"
   double time_factor = 1;           ///< shown time = this x State::time
   double length = 1;                ///< area radius: lengths are shown in units of it
   std::string length_symbol = "R_{0}";
@@ -88,6 +88,9 @@ const std::vector<FigureRow>& figures();
 /// Throws std::invalid_argument that names the nearest known kind.
 const FigureRow& find_figure(std::string_view name);
 
+/// Of the PNG.
+double dots_per_inch(const FigureParameters& parameters);
+
 /// The page that parameters ask for: sizes in points, 0 where the kind decides.
 struct Page {
   Theme theme;
@@ -96,6 +99,7 @@ struct Page {
 Page page_of(const FigureParameters& parameters);
 
 /// `panels` indices spread evenly over `count` states, first and last among them; or, with times, the nearest states.
+/// Throws std::invalid_argument for a time beyond the last state.
 std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters);
 
 /// The plane of a figure; origin: the given point, or the vesicle's centroid. Its axes lie along x and z as far as they can.
@@ -117,6 +121,9 @@ struct Sheet {
 };
 /// Rows of panels at one scale that fill the page, each as wide as its state needs.
 Sheet sheet_layout(const FigureInput& input);
+
+/// "γ̇t = 2.5": as exact as tells the instants of the figure apart. `time`: as shown.
+std::string time_text(const FigureInput& input, double time);
 
 /// A text that may hold commas or quotes as one cell of a CSV.
 std::string csv_cell(const std::string& text);

@@ -129,7 +129,7 @@ Figure draw_streamlines(const FigureInput& input) {
   }
   std::shared_ptr<const Image> image;
   if (with_bar) image = std::make_shared<const Image>(picture_of(flow.speed, top_speed / flow.speed_factor));
-  figure.drawing = {page_width, page_height, nullptr, theme.ground, input.parameters.dots_per_inch};
+  figure.drawing = {page_width, page_height, nullptr, theme.ground, dots_per_inch(input.parameters)};
   figure.drawing.paint = [=, lines = flow.lines, cells = flow.speed_window, spacing = flow.spacing, speed_label = flow.speed_label,
                           shown = fmt::format("{}", time_text(input, input.time_factor * input.states.front().time)),
                           frame = input.parameters.frame, vesicles = input.states.front().vesicles.size(),

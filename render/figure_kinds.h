@@ -13,8 +13,6 @@ Figure draw_inclination(const FigureInput& input);
 Figure draw_time_series(const FigureInput& input);
 Figure draw_plots(const FigureInput& input);
 
-/// "γ̇t = 2.5".
-std::string time_text(const FigureInput& input, double time);
 /// a..z, then aa, ab, ...
 std::string letter(std::size_t k);
 /// Dark blue, green, orange: early (0) to late (1), distinct in grey as well.

@@ -32,7 +32,7 @@ Range range_of_axis(const std::vector<double>& values, Scale scale, bool absciss
   double size = 0;
   for (const double v : values)
     if (std::isfinite(v)) size = std::max(size, std::abs(v));
-  if (abscissa) return range_of(values, 0, 1e-12);
+  if (abscissa) return range_of(values, 0);
   return range_of(values, 0.07, std::max(1e-4 * size, 1e-14));  // rounding errors are not blown up to the height of a panel
 }
 
@@ -194,7 +194,7 @@ Figure arranged(const FigureInput& input, std::vector<Plot> plots, bool stacked,
   for (Placed& p : placed) place_legend(p, ruler, theme);
   Figure figure;
   figure.csv = std::move(csv);
-  figure.drawing = {width, total, nullptr, theme.ground, input.parameters.dots_per_inch};
+  figure.drawing = {width, total, nullptr, theme.ground, dots_per_inch(input.parameters)};
   figure.drawing.paint = [placed, theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     for (const Placed& p : placed) draw(pen, p);

@@ -202,7 +202,7 @@ Figure draw_cross_sections(const FigureInput& input) {
   }
   Figure figure;
   figure.csv = csv_of(*s);
-  figure.drawing = {strip.width, strip.height, nullptr, page.theme.ground, input.parameters.dots_per_inch};
+  figure.drawing = {strip.width, strip.height, nullptr, page.theme.ground, dots_per_inch(input.parameters)};
   figure.drawing.paint = [s, input, strip, theme = page.theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     for (std::size_t k = 0; k < strip.panels.size(); ++k) {
@@ -250,7 +250,7 @@ Figure draw_overlay(const FigureInput& input) {
   }
   Figure figure;
   figure.csv = csv_of(*s);
-  figure.drawing = {page_width, page_height, nullptr, theme.ground, input.parameters.dots_per_inch};
+  figure.drawing = {page_width, page_height, nullptr, theme.ground, dots_per_inch(input.parameters)};
   figure.drawing.paint = [s, entries, colours, panel, axes, legend, theme = page.theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     draw_grid(pen, panel, axes);

@@ -21,8 +21,10 @@ struct Extent {
 
 Extent extent_of(const sim::State& state, const ViewAxes& axes) {
   Extent e{Eigen::Vector2d::Constant(1e300), Eigen::Vector2d::Constant(-1e300)};
-  for (const glm::vec3& point : summarize(state).points) {
-    const Eigen::Vector2d p(glm::dot(glm::dvec3(point), axes.right), glm::dot(glm::dvec3(point), axes.up));
+  const StateSummary summary = summarize(state);
+  for (std::size_t k = 0; k < summary.points.size(); ++k) {
+    const glm::dvec3 point = summary.point(k);
+    const Eigen::Vector2d p(glm::dot(point, axes.right), glm::dot(point, axes.up));
     e.low = e.low.cwiseMin(p);
     e.high = e.high.cwiseMax(p);
   }
@@ -136,7 +138,7 @@ Figure draw_snapshots(const FigureInput& input) {
       figure.csv += fmt::format("{},{:.10g},{},{:.10g},{:.10g},{:.10g}\n", letter(k), input.time_factor * input.states[k].time, v, c.x, c.y, c.z);
     }
   const auto stills = std::make_shared<const std::vector<Image>>(input.stills);
-  figure.drawing = {sheet.width, sheet.height, nullptr, page.theme.ground, input.parameters.dots_per_inch};
+  figure.drawing = {sheet.width, sheet.height, nullptr, page.theme.ground, dots_per_inch(input.parameters)};
   figure.drawing.paint = [sheet, stills, input_length = input.length, symbol = input.length_symbol,
                           theme = page.theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};

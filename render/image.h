@@ -46,11 +46,14 @@ using PngText = std::vector<std::pair<std::string, std::string>>;
 
 /// Throws std::runtime_error with path and reason.
 /// compression: zlib level 0-9; no PNG filter, which suits flat, smooth pictures best.
-void write_png(const std::filesystem::path& path, const Image& image, const PngText& text = {}, int compression = 6,
-               const sim::FileWriter& write = sim::write_file);
+/// dots_per_inch: says how large the picture is meant to be; 0: it does not say.
+inline constexpr int default_compression = 6;
+void write_png(const std::filesystem::path& path, const Image& image, const PngText& text = {},
+               int compression = default_compression, double dots_per_inch = 0, const sim::FileWriter& write = sim::write_file);
 
 /// The bytes of such a file.
-std::string png_bytes(const Image& image, const PngText& text = {}, int compression = 6);
+std::string png_bytes(const Image& image, const PngText& text = {}, int compression = default_compression,
+                      double dots_per_inch = 0);
 
 struct PngFile {
   Image image;  ///< RGB, or RGBA when the file has transparency

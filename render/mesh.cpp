@@ -87,9 +87,9 @@ Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& st
     mesh.scalar.resize(count);
     for (Eigen::Index j = 0; j < columns; ++j)
       for (Eigen::Index i = 0; i < rings; ++i)
-        mesh.scalar[static_cast<std::size_t>(j * rings + i)] = static_cast<float>(f.value(j * rows + i + 1, 0));
-    mesh.scalar[north] = static_cast<float>(f.value(0, 0));
-    mesh.scalar[south] = static_cast<float>(f.value(rows - 1, 0));
+        mesh.scalar[static_cast<std::size_t>(j * rings + i)] = f.value(j * rows + i + 1, 0);
+    mesh.scalar[north] = f.value(0, 0);
+    mesh.scalar[south] = f.value(rows - 1, 0);
   }
   if (state.tracers.rows() > 0) {
     const SurfacePoints dots = surface_points(state.position, state.tracers);
@@ -104,11 +104,11 @@ Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& st
 std::vector<glm::vec2> nearest_tracers(const Mesh& mesh) {
   std::vector<glm::vec2> nearest(mesh.position.size(), glm::vec2(-1));
   for (std::size_t v = 0; v < mesh.position.size(); ++v) {
-    float first = std::numeric_limits<float>::infinity(), second = first;
+    double first = std::numeric_limits<double>::infinity(), second = first;
     for (std::size_t k = 0; k < mesh.tracers.size(); ++k) {
       const Mesh::Tracer& dot = mesh.tracers[k];
-      const glm::vec3 away = mesh.position[v] - dot.position;
-      const float d = glm::dot(away, away);
+      const glm::dvec3 away = mesh.position[v] - dot.position;
+      const double d = glm::dot(away, away);
       if (d >= second || glm::dot(mesh.normal[v], dot.normal) < 0.2F)
         continue;  // the far side of a thin disc is near as well
       if (d < first) {

@@ -40,13 +40,14 @@ class MeshPlan {
 /// One element a vertex in every array; scalar may be empty.
 struct Mesh {
   std::shared_ptr<const MeshPlan> plan;
-  std::vector<glm::vec3> position;
+  std::vector<glm::dvec3> position;  ///< in the scene
   std::vector<glm::vec3> normal;  ///< outward unit vectors
   std::vector<glm::vec3> label;   ///< material label, unit vectors
-  std::vector<float> scalar;      ///< for fields
+  std::vector<double> scalar;     ///< for fields
   double area_radius = 0;         ///< of the sphere of the same area
   struct Tracer {
-    glm::vec3 position, normal;
+    glm::dvec3 position;
+    glm::vec3 normal;
     bool bright;  ///< x + y + z of its initial direction > 0
   };
   std::vector<Tracer> tracers;

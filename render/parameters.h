@@ -266,7 +266,7 @@ struct FigureParameters {
   std::string unit = "mm";
   std::string theme = "paper";
   double font_size = 0;  ///< pt; 0: the theme's
-  double dots_per_inch = 200;
+  std::optional<double> dots_per_inch;
   std::vector<double> plane_point;  ///< empty: through the centroid of each vesicle
   sim::Vec3 plane_normal{0, 1, 0};
   std::string window = "auto";
@@ -315,7 +315,8 @@ void visit(P& p, V&& v) {
               .minimum = 0,
               .maximum = 72},
     p.font_size);
-  v(Parameter{.name = "dots_per_inch", .unit = "1/inch", .meaning = "of the PNG", .minimum = 30, .maximum = 2400},
+  v(Parameter{.name = "dots_per_inch", .unit = "1/inch", .meaning = "of the PNG, which says so itself", .minimum = 30,
+              .maximum = 2400, .when_absent = "300; 200 for a size in pixels, which is for a screen"},
     p.dots_per_inch);
   v(Parameter{.name = "plane_point",
               .unit = "length",

@@ -50,25 +50,17 @@ std::vector<double> tick_values(const Range& range, int wanted, Scale scale) {
       break;
     }
   std::vector<double> ticks;
-  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * step; ++k)
+  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * step; ++k) {
+    if (k + 1 == k || (!ticks.empty() && !(k * step > ticks.back()))) break;  // finer than double precision
     ticks.push_back(k == 0 ? 0 : k * step);
+  }
   return ticks;
 }
 
 std::vector<std::string> tick_texts(const std::vector<double>& values, Scale scale) {
+  if (scale != Scale::logarithmic) return number_texts(values);
   std::vector<std::string> texts;
-  double largest = 0;
-  for (const double v : values) largest = std::max(largest, std::abs(v));
-  int digits = 0;
-  for (const double v : values)
-    while (digits < 6 && std::abs(v * std::pow(10, digits) - std::round(v * std::pow(10, digits))) > 1e-6 * std::max(1.0, std::abs(v)))
-      ++digits;
-  const bool plain = largest == 0 || (largest >= 1e-3 && largest < 1e5 && digits < 6);
-  for (const double v : values) {
-    if (scale == Scale::logarithmic) texts.push_back(power_text(v));
-    else if (!plain) texts.push_back(number_text(v));
-    else texts.push_back(fmt::format("{}{:.{}f}", v < 0 ? "−" : "", std::abs(v), digits));
-  }
+  for (const double v : values) texts.push_back(power_text(v));
   return texts;
 }
 
@@ -77,7 +69,9 @@ Range range_of(const std::vector<double>& values, double margin, double least) {
   for (const double v : values)
     if (std::isfinite(v)) r = {std::min(r.low, v), std::max(r.high, v)};
   if (r.low > r.high) return {0, 1};
-  const double half = std::max(r.size() / 2 * (1 + 2 * margin), least / 2), middle = (r.low + r.high) / 2;
+  const double size = std::max(std::abs(r.low), std::abs(r.high));
+  const double half = std::max({r.size() / 2 * (1 + 2 * margin), least / 2, 1e-12 * size}), middle = (r.low + r.high) / 2;
+  if (half == 0) return {-1, 1};
   return {middle - half, middle + half};
 }
 

@@ -48,11 +48,11 @@ enum class Scale { linear, degrees, logarithmic };
 
 /// About `wanted` round numbers inside the range.
 std::vector<double> tick_values(const Range& range, int wanted, Scale scale = Scale::linear);
-/// How they are written: all with as many digits after the point as the one that needs most.
+/// How they are written: number_texts(), or powers of ten.
 std::vector<std::string> tick_texts(const std::vector<double>& values, Scale scale = Scale::linear);
 
-/// `values` widened by `margin` of their span and to at least `least`.
-Range range_of(const std::vector<double>& values, double margin = 0.06, double least = 1e-9);
+/// `values` widened by `margin` of their span, to at least `least` and to what double precision can tell apart.
+Range range_of(const std::vector<double>& values, double margin = 0.06, double least = 0);
 /// A range of decades that holds the logarithms of the positive values.
 Range decades(const std::vector<double>& values);
 /// Decimal logarithms; not a number where there is none.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
@@ -50,7 +51,8 @@ std::vector<png_text> chunks_of(const PngText& text) {
   return chunks;
 }
 
-bool write_stream(std::FILE* file, const Image& image, std::vector<png_text>& chunks, int compression, Failure& failure) {
+bool write_stream(std::FILE* file, const Image& image, std::vector<png_text>& chunks, int compression, double dots_per_inch,
+                  Failure& failure) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, on_error, on_warning);
   if (!png) return false;
   png_infop info = png_create_info_struct(png);
@@ -63,6 +65,8 @@ bool write_stream(std::FILE* file, const Image& image, std::vector<png_text>& ch
                image.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  const auto dots_per_metre = static_cast<png_uint_32>(std::lround(dots_per_inch / 0.0254));
+  if (dots_per_metre > 0) png_set_pHYs(png, info, dots_per_metre, dots_per_metre, PNG_RESOLUTION_METER);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
   png_set_compression_level(png, compression);
   if (!chunks.empty()) png_set_text(png, info, chunks.data(), static_cast<int>(chunks.size()));
@@ -251,14 +255,14 @@ Declared read_declared(std::FILE* file) {
 
 }  // namespace
 
-std::string png_bytes(const Image& image, const PngText& text, int compression) {
+std::string png_bytes(const Image& image, const PngText& text, int compression, double dots_per_inch) {
   char* bytes = nullptr;
   std::size_t size = 0;
   std::FILE* stream = ::open_memstream(&bytes, &size);
   if (!stream) throw std::bad_alloc();
   std::vector<png_text> chunks = chunks_of(text);
   Failure failure;
-  const bool written = write_stream(stream, image, chunks, compression, failure);
+  const bool written = write_stream(stream, image, chunks, compression, dots_per_inch, failure);
   const bool closed = std::fclose(stream) == 0;
   const std::string result(bytes ? bytes : "", bytes ? size : 0);
   std::free(bytes);
@@ -267,10 +271,10 @@ std::string png_bytes(const Image& image, const PngText& text, int compression) 
 }
 
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text, int compression,
-               const sim::FileWriter& write) {
+               double dots_per_inch, const sim::FileWriter& write) {
   std::string bytes;
   try {
-    bytes = png_bytes(image, text, compression);
+    bytes = png_bytes(image, text, compression, dots_per_inch);
   } catch (const std::runtime_error& error) {
     fail(path, std::string("cannot be written: ") + error.what());
   }

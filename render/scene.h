@@ -14,7 +14,7 @@ namespace render {
 /// What a plane takes away of a body, for the style "cutaway".
 struct Cut {
   glm::dvec3 normal{0, -1, 0};  ///< unit vector toward the side that is taken away
-  double height = 0;            ///< the plane is normal . x = height
+  glm::dvec3 point{0};          ///< of the plane
   std::vector<std::vector<glm::dvec3>> edges;  ///< closed curves, the first point is not repeated
 };
 

@@ -174,7 +174,7 @@ std::vector<Streamline> streamlines(const PlaneFlow& flow, const Range& x, const
   for (int i = 0; i <= 8; ++i)
     for (int j = 0; j <= 8; ++j)
       fastest = std::max(fastest, flow({x.low + x.size() * i / 8, y.low + y.size() * j / 8}).norm());
-  if (!(fastest > 0)) return lines;
+  if (!(fastest > o.rest)) return lines;
   const double least = o.stagnation * fastest;
 
   std::deque<Vec2> waiting(seeds.begin(), seeds.end());

@@ -21,6 +21,7 @@ struct StreamlineOptions {
   double shortest = 2;       ///< lines shorter than so many spacings are left out
   double closing = 0.2;      ///< a line that passes its seed again within this share of the spacing is drawn as a closed one
   double stagnation = 1e-3;  ///< lines end where the speed falls below this share of the fastest seen
+  double rest = 0;           ///< a flow that is nowhere faster is at rest, and has no lines
 };
 
 struct Streamline {

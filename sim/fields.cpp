@@ -3,8 +3,10 @@
 #include "forces.h"
 #include "parallel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace sim {
 
@@ -42,15 +44,27 @@ Vector membrane_speed(const FieldSite& s) {
   return (u - (s.geometry.n.array().colwise() * across.array()).matrix()).rowwise().norm();
 }
 
-/// A neighbour as a net of points, dense enough to find the nearest part of it.
-struct Net {
+}  // namespace
+
+/// A vesicle as a net of points, dense enough to find the nearest part of it. Points near each other make a patch.
+struct Surroundings::Net {
   Matrix points, normals, parameters;
   Vec3 centre;
   double reach;  ///< of its points from the centre
+  struct Patch {
+    Vec3 centre;
+    double reach;
+    std::vector<Eigen::Index> points;
+  };
+  std::vector<Patch> patches;
 };
 
+namespace {
+
+using Net = Surroundings::Net;
+
 Net net_of(const Coefficients& position) {
-  constexpr Eigen::Index latitudes = 40, longitudes = 80;
+  constexpr Eigen::Index latitudes = 40, longitudes = 80, side = 5;  // of a patch
   const double step = std::numbers::pi / latitudes;
   const Vector theta = Vector::LinSpaced(latitudes, step / 2, std::numbers::pi - step / 2);
   const Vector phi = Vector::LinSpaced(longitudes + 1, 0, 2 * std::numbers::pi).head(longitudes);
@@ -66,23 +80,59 @@ Net net_of(const Coefficients& position) {
   }
   net.centre = net.points.colwise().mean().transpose();
   net.reach = (net.points.rowwise() - net.centre.transpose()).rowwise().norm().maxCoeff();
+  for (Eigen::Index j = 0; j < longitudes; j += side)
+    for (Eigen::Index i = 0; i < latitudes; i += side) {
+      Net::Patch& patch = net.patches.emplace_back(Net::Patch{Vec3::Zero(), 0, {}});
+      for (Eigen::Index b = j; b < j + side; ++b)
+        for (Eigen::Index a = i; a < i + side; ++a) patch.points.push_back(a + b * latitudes);
+      for (const Eigen::Index k : patch.points) patch.centre += net.points.row(k).transpose() / static_cast<double>(side * side);
+      for (const Eigen::Index k : patch.points)
+        patch.reach = std::max(patch.reach, (net.points.row(k).transpose() - patch.centre).norm());
+    }
   return net;
 }
 
+/// Number and distance of the nearest point of a net: patches that cannot hold it are passed over.
+std::pair<Eigen::Index, double> nearest_of(const Net& net, const Vec3& here) {
+  std::vector<double> away;  // of the patches' centres
+  away.reserve(net.patches.size());
+  std::size_t first = 0;
+  for (const Net::Patch& patch : net.patches) {
+    away.push_back((patch.centre - here).norm());
+    if (away.back() < away[first]) first = away.size() - 1;
+  }
+  Eigen::Index nearest = 0;
+  double best2 = std::numeric_limits<double>::infinity();
+  const auto look_into = [&](const Net::Patch& patch) {
+    for (const Eigen::Index k : patch.points)
+      if (const double d2 = (net.points.row(k).transpose() - here).squaredNorm(); d2 < best2) {
+        best2 = d2;
+        nearest = k;
+      }
+  };
+  look_into(net.patches[first]);
+  for (std::size_t k = 0; k < net.patches.size(); ++k)
+    if (k != first && away[k] - net.patches[k].reach < std::sqrt(best2)) look_into(net.patches[k]);
+  return {nearest, std::sqrt(best2)};
+}
+
 Vector neighbour_distance(const FieldSite& s) {
-  std::vector<Net> nets;
-  for (const VesicleState& v : s.state.vesicles) nets.push_back(net_of(v.position));
+  const std::vector<Net>& nets = s.surroundings.nets(s.state);
   const double near = 0.3 * nets[s.vesicle].reach;  // below it the exact nearest point, above it that of the net
   const Matrix& x = s.geometry.x.value;
   Vector distance(x.rows());
   parallel_for(static_cast<int>(x.rows()), [&](int i) {
     const Vec3 here = x.row(i);
     double best = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < nets.size(); ++k) {
+    // Those that may come nearest first: most of the others need no look.
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t k = 0; k < nets.size(); ++k)
+      if (k != s.vesicle) order.emplace_back((here - nets[k].centre).norm() - nets[k].reach, k);
+    std::sort(order.begin(), order.end());
+    for (const auto& [least, k] : order) {
+      if (least >= best) break;
       const Net& net = nets[k];
-      if (k == s.vesicle || (here - net.centre).norm() - net.reach >= best) continue;
-      Eigen::Index nearest = 0;
-      const double rough = std::sqrt((net.points.rowwise() - here.transpose()).rowwise().squaredNorm().minCoeff(&nearest));
+      const auto [nearest, rough] = nearest_of(net, here);
       const double height = std::abs(net.normals.row(nearest).dot(here.transpose() - net.points.row(nearest)));
       // Above the tangent plane of a surface that curves like the net's own sphere.
       const double aside2 = std::max(rough * rough - height * height, 0.0), curved = height + 0.5 * aside2 / (net.reach + height);
@@ -125,15 +175,24 @@ const FieldRow& find_field(std::string_view name) {
                               suggestion(name, row_names(field_catalogue())));
 }
 
+Surroundings::Surroundings() = default;
+Surroundings::~Surroundings() = default;
+
+const std::vector<Surroundings::Net>& Surroundings::nets(const State& state) {
+  if (nets_.empty())
+    for (const VesicleState& v : state.vesicles) nets_.push_back(net_of(v.position));
+  return nets_;
+}
+
 Coefficients membrane_field(Plans& plans, const FieldRow& field, const State& state, std::size_t vesicle,
-                            double bending_modulus) {
+                            double bending_modulus, Surroundings& surroundings) {
   if (field.needs_neighbours && state.vesicles.size() < 2)
     throw std::invalid_argument("the field '" + std::string(field.name) + "' needs two vesicles or more");
   const VesicleState& v = state.vesicles.at(vesicle);
   const int p = v.position.order;
   const int q = std::clamp(3 * p, 24, std::max(96, p));  // nonlinear in the surface: three times its degree
   const Basis &basis = plans.basis(p, q), &full = plans.basis(q, q);
-  const FieldSite site{basis, full, geometry(basis, v.position), state, vesicle, bending_modulus};
+  const FieldSite site{basis, full, geometry(basis, v.position), state, vesicle, bending_modulus, surroundings};
   return full.analyze(Matrix(field.function(site)));
 }
 

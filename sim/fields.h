@@ -11,8 +11,22 @@
 #include "parameters.h"
 
 #include <limits>
+#include <vector>
 
 namespace sim {
+
+/// What the vesicles of one state share when their fields are taken one after the other. Made at the first need.
+class Surroundings {
+ public:
+  struct Net;
+  Surroundings();
+  ~Surroundings();
+  Surroundings(const Surroundings&) = delete;
+  const std::vector<Net>& nets(const State&);
+
+ private:
+  std::vector<Net> nets_;
+};
 
 /// One vesicle at one instant, on the grid on which its fields are sampled.
 struct FieldSite {
@@ -22,6 +36,7 @@ struct FieldSite {
   const State& state;
   std::size_t vesicle;      ///< within state
   double bending_modulus;
+  Surroundings& surroundings;
 };
 
 /// What a field is divided by to become a pure number.
@@ -50,8 +65,14 @@ const std::vector<FieldRow>& field_catalogue();
 /// Throws std::invalid_argument that names the nearest known field.
 const FieldRow& find_field(std::string_view name);
 
-/// The field of one vesicle, one column. Throws std::invalid_argument when it needs neighbours and there are none, and
+/// The field of one vesicle, one column; `surroundings`: of this state. Throws std::invalid_argument when it needs neighbours and there are none, and
 /// std::domain_error when the surface is not regular.
-Coefficients membrane_field(Plans&, const FieldRow&, const State&, std::size_t vesicle, double bending_modulus);
+Coefficients membrane_field(Plans&, const FieldRow&, const State&, std::size_t vesicle, double bending_modulus,
+                            Surroundings& surroundings);
+inline Coefficients membrane_field(Plans& plans, const FieldRow& field, const State& state, std::size_t vesicle,
+                                   double bending_modulus) {
+  Surroundings surroundings;
+  return membrane_field(plans, field, state, vesicle, bending_modulus, surroundings);
+}
 
 }  // namespace sim

@@ -2,11 +2,13 @@
 #include "app/fields.h"
 #include "app/pictures.h"
 #include "app/scene_file.h"
+#include "app/streamlines.h"
 
 #include "sim/simulate.h"
 #include "tests/support/temporary_folder.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <string>
 
@@ -88,4 +90,106 @@ TEST_CASE("dots mark what is below zero: a range that is not about zero has none
   CHECK(mirrored("[-0.1, 0.1]"));
   CHECK_FALSE(mirrored("[-0.03, 0.08]"));
   CHECK_FALSE(mirrored("[0.01, 0.08]"));
+}
+
+namespace {
+
+/// The bar of a still at the end, or of the movie, of a prolate in shear.
+render::Legend bar_of(const std::string& range, bool still) {
+  const support::TemporaryFolder folder;
+  const app::Settings settings = app::parse_scene(R"([flow]
+kind = "shear"
+[time]
+end = 1
+step = 0.1
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.85
+order = 6
+[view]
+style = "field"
+field_range = )" + range + "\n", "s.toml", ".");
+  const std::string file = (folder / "t.h5").string();
+  sim::SimulationOptions options;
+  options.trajectory = file;
+  sim::simulate(settings.scene, options, {});
+  const sim::TrajectoryReader reader(file);
+  const sim::State last = reader.state(reader.count() - 1);
+  return app::plan_painting(reader, {0, reader.count() - 1}, settings, 1, still ? &last : nullptr).legend.value();
+}
+
+/// One vesicle in a fluid at rest, in any unit: what its field is painted on.
+render::Legend at_rest(const std::string& field, double radius, const std::string& shape) {
+  const support::TemporaryFolder folder;
+  const app::Settings settings = app::parse_scene(R"([flow]
+kind = "none"
+[time]
+end = )" + std::to_string(0.2 * radius * radius) + "\nstep = " + std::to_string(0.1 * radius * radius) + R"(
+[[vesicle]]
+order = 8
+shape = ")" + shape + "\"\nradius = " + std::to_string(radius) + "\n[view]\nstyle = \"field\"\nfield = \"" + field + "\"\n", "s.toml", ".");
+  const std::string file = (folder / "t.h5").string();
+  sim::SimulationOptions options;
+  options.trajectory = file;
+  sim::simulate(settings.scene, options, {});
+  const sim::TrajectoryReader reader(file);
+  return app::plan_painting(reader, {0, reader.count() - 1}, settings, radius).legend.value();
+}
+
+}  // namespace
+
+TEST_CASE("the bar has a head where values lie beyond a range that was given, and only there") {
+  // The tension at the end lies between some 90 and 270.
+  const render::Legend around = bar_of("[50, 400]", true), within = bar_of("[120, 180]", true), below = bar_of("[-1, 0]", true);
+  CHECK_FALSE(around.below);
+  CHECK_FALSE(around.above);
+  CHECK(within.below);
+  CHECK(within.above);
+  CHECK_FALSE(below.below);
+  CHECK(below.above);
+  CHECK(bar_of("[-1, 0]", false).above);  // of the movie
+}
+
+TEST_CASE("a field that vanishes up to rounding has a range of its natural size, in any unit") {
+  for (const double radius : {1.0, 100.0})
+    for (const char* field : {"tension", "membrane-speed", "normal-velocity", "bending-force"}) {
+      INFO(field << ", radius " << radius);
+      const render::Legend legend = at_rest(field, radius, "sphere");
+      CHECK(legend.low < 0);  // about zero, or about the field's one value
+      CHECK(legend.high - legend.low > 1e-6);
+    }
+  const render::Legend curvature = at_rest("mean-curvature", 100, "sphere");
+  CHECK(curvature.low < 1);
+  CHECK(curvature.high > 1);
+}
+
+TEST_CASE("a fluid at rest has no streamlines and one colour, in any unit") {
+  for (const double radius : {1.0, 1e-6, 1e6}) {
+    INFO("radius " << radius);
+    const support::TemporaryFolder folder;
+    const app::Settings settings = app::parse_scene(fmt::format(R"([flow]
+kind = "none"
+[time]
+end = {0}
+step = {0}
+[[vesicle]]
+order = 6
+radius = {1}
+bending_modulus = {2}
+)", 0.1, radius, radius * radius * radius), "s.toml", ".");
+    const std::string file = (folder / "t.h5").string();
+    sim::SimulationOptions options;
+    options.trajectory = file;
+    sim::simulate(settings.scene, options, {});
+    const sim::TrajectoryReader reader(file);
+    const sim::State state = reader.state(reader.count() - 1);
+    sim::Plans plans;
+    render::FigureParameters parameters;
+    parameters.spacing = 0.4;
+    const render::FlowPicture flow =
+        app::flow_picture(plans, settings.scene, state, app::flow_request(plans, state, parameters, radius));
+    CHECK(flow.lines.empty());
+    CHECK(flow.speed.size() > 0);
+    CHECK(flow.speed.cwiseAbs().maxCoeff() == 0);
+  }
 }

@@ -1,7 +1,12 @@
 // `tanktread render` and what `run` draws: frames, movies, stills and what stands on them.
+#include "app/captions.h"
 #include "app/folder_lock.h"
+#include "app/pictures.h"
+#include "app/scene_file.h"
 #include "desk.h"
 #include "render/image.h"
+#include "render/section.h"
+#include "sim/simulate.h"
 #include "sim/trajectory.h"
 
 #include <catch2/catch.hpp>
@@ -256,4 +261,73 @@ TEST_CASE("before and after material lines are laid anew the pictures say so", "
                   .status == 0);
     CHECK((desk({"compare", desk.file("t.png"), desk.file("u.png")}).status != 0) == told);
   }
+}
+
+TEST_CASE("processes that draw frames take any file name, and their frames count as drawn", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("-t.h5"), "-q"}).status == 0);
+  const fs::path before = fs::current_path();
+  fs::current_path(desk / "");
+  const Outcome first = desk({"render", "-j", "2", "-o", desk.file("a"), "--", "-t.h5"});
+  const Outcome again = desk({"render", "-j", "2", "-o", desk.file("a"), "--", "-t.h5"});
+  fs::current_path(before);
+  CHECK(first.status == 0);
+  CHECK_THAT(first.out, Contains("6 frames drawn, 0 kept"));
+  CHECK_THAT(again.out, Contains("0 frames drawn, 6 kept"));
+}
+
+TEST_CASE("a still of no time of the trajectory is refused", "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  for (const char* time : {"nan", "-nan", "inf", "-1", "1e9"}) {
+    const Outcome outcome = desk({"render", desk.file("t.h5"), "-o", desk.file("a.png"), std::string("--time=") + time});
+    CHECK(outcome.status == 1);
+    CHECK_THAT(outcome.err, Contains("the trajectory goes from t = 0"));
+    CHECK_FALSE(fs::exists(desk / "a.png"));
+  }
+}
+
+TEST_CASE("the inset holds the cross-sections of all vesicles at every instant", "[commands]") {
+  const support::TemporaryFolder folder;
+  for (const char* camera : {"flow-gradient", "along-flow", "three-quarter"}) {
+    const app::Settings settings = app::parse_scene(std::string(R"([flow]
+kind = "shear"
+[time]
+end = 0.2
+step = 0.1
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.85
+order = 4
+center = [-1.8, 0, 0.4]
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.85
+order = 4
+center = [4.8, 0, -0.4]
+[view]
+camera = ")") + camera + "\"\n", "s.toml", ".");
+    const std::string file = (folder / (std::string(camera) + ".h5")).string();
+    sim::SimulationOptions options;
+    options.trajectory = file;
+    sim::simulate(settings.scene, options, {});
+    const sim::TrajectoryReader reader(file);
+    const app::Production production = app::prepare_pictures({{reader, settings}});
+    const app::ViewPanel& panel = production.panels.front();
+    for (std::int64_t k = 0; k < reader.count(); ++k)
+      for (const sim::VesicleState& vesicle : reader.state(k).vesicles)
+        for (const render::ClosedCurve& curve : render::cut(vesicle.position, {}))
+          for (Eigen::Index i = 0; i < curve.points.rows(); ++i) {
+            CHECK(std::abs(curve.points(i, 0) - panel.inset_centre.x) < panel.inset_half.x);
+            CHECK(std::abs(curve.points(i, 1) - panel.inset_centre.y) < panel.inset_half.y);
+          }
+  }
+}
+
+TEST_CASE("times of a movie are written so that its frames differ, in any unit") {
+  sim::Scene any;
+  CHECK(app::time_caption(any, 12.5, app::time_format(any, 0.1, 20)) == "t = 12.50");
+  CHECK(app::time_caption(any, 0.125, app::time_format(any, 0.005, 1)) == "t = 0.125");
+  CHECK(app::time_caption(any, 1.25e-6, app::time_format(any, 1e-8, 4e-6)) == "t = 1.25·10^{−6}");
+  CHECK(app::time_caption(any, 2.5e6, app::time_format(any, 1e4, 9e6)) == "t = 2.50·10^{6}");
 }

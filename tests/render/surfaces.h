@@ -111,7 +111,7 @@ inline render::Frame painted(render::Frame frame, const sim::State& state) {
   legend.colours = render::colour_table(render::find_colour_map("viridis"));
   for (std::size_t v = 0; v < frame.bodies.size(); ++v) {
     render::Body& body = frame.bodies[v];
-    for (const glm::vec3& p : body.mesh.position) body.mesh.scalar.push_back(p.z);
+    for (const glm::dvec3& p : body.mesh.position) body.mesh.scalar.push_back(p.z);
     body.cut = render::make_cut(state.vesicles[v].position, -Vec3::UnitY(), 0);
   }
   frame.legend = legend;

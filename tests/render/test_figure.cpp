@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 using sim::Vec3;
@@ -169,8 +171,8 @@ TEST_CASE("a circle stays a circle on every page") {
         const render::Image image = render::read_png(folder / "f.png").image;
         INFO(kind << " on a page of " << page.size() << " numbers, " << image.width << "x" << image.height << ", theme " << theme);
         if (page.size() == 2) {
-          CHECK(image.width == std::lround(page[0] / 25.4 * 200));
-          CHECK(image.height == std::lround(page[1] / 25.4 * 200));
+          CHECK(image.width == std::lround(page[0] / 25.4 * 300));
+          CHECK(image.height == std::lround(page[1] / 25.4 * 300));
         }
         // The outline is the only colour: its extent in both directions.
         int low[2] = {image.width, image.height}, high[2] = {0, 0};
@@ -255,4 +257,69 @@ TEST_CASE("a figure that cannot be written names its path") {
   CHECK_THROWS_AS(render::find_figure("cross-sections").draw({}), std::invalid_argument);
   CHECK_THAT(support::message_of([] { render::find_figure("cross-section"); }),
              Catch::Contains("did you mean 'cross-sections'"));
+}
+
+TEST_CASE("numbers of an axis differ from each other, whatever their size and offset") {
+  using Texts = std::vector<std::string>;
+  CHECK(render::number_texts({1e6, 1000000.2, 1000000.4}) == Texts{"1000000.0", "1000000.2", "1000000.4"});
+  CHECK(render::number_texts({99999998, 1e8, 100000002}) == Texts{"99999998", "100000000", "100000002"});
+  CHECK(render::number_texts({0, 5e6, 1e7}) == Texts{"0", "0.5·10^{7}", "1.0·10^{7}"});
+  CHECK(render::number_texts({-2e-7, 0, 2e-7}) == Texts{"−2·10^{−7}", "0", "2·10^{−7}"});
+  CHECK(render::number_texts({2e7, 3e7}) == Texts{"2·10^{7}", "3·10^{7}"});
+  CHECK(render::number_text(9.99999e7) == "10^{8}");  // not 10·10^7
+  for (const double offset : {0.0, 1.0, 1e3, 1e8, -1e10})
+    for (const double step : {1e-4, 0.25, 3.0, 1e6}) {
+      std::vector<double> values;
+      for (int k = 0; k < 6; ++k) values.push_back(offset + k * step);
+      Texts texts = render::number_texts(values);
+      INFO(offset << " by " << step << ": " << texts[0] << ", " << texts[1]);
+      std::sort(texts.begin(), texts.end());
+      CHECK(std::unique(texts.begin(), texts.end()) == texts.end());
+    }
+}
+
+TEST_CASE("instants beyond the trajectory are refused, not moved") {
+  render::FigureParameters p;
+  p.times = {0.5, 2.5};
+  CHECK_THROWS_WITH(render::chosen_states({0, 1, 2}, p), Catch::Contains("goes from t = 0 to t = 2") && Catch::Contains("2.5"));
+  p.times = {std::nan("")};
+  CHECK_THROWS(render::chosen_states({0, 1, 2}, p));
+  p.times = {2};
+  CHECK(render::chosen_states({0, 1, 2}, p) == std::vector<std::size_t>{2});
+}
+
+TEST_CASE("text of a figure is text in PDF and SVG, and the PNG says its dots per inch") {
+  const support::TemporaryFolder folder;
+  render::Drawing drawing{200, 60, nullptr, render::white, 300};
+  drawing.paint = [](cairo_t* cairo, const render::Font& font) {
+    cairo_set_source_rgb(cairo, 0, 0, 0.5);
+    render::draw_text(cairo, font, 12, 100, 30, "R_{0} < \x01 2", render::Align::centre);
+  };
+  const auto bytes = [](const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  render::write_drawing_svg(folder / "a.svg", drawing);
+  const std::string svg = bytes(folder / "a.svg");
+  CHECK_THAT(svg, Catch::Contains("<text") && Catch::Contains("font-family=\"'DejaVu Sans'") && Catch::Contains(">0</tspan>") &&
+                      Catch::Contains("text-anchor=\"middle\"") && Catch::Contains("#000080") && Catch::Contains(" &lt;   2"));
+  CHECK(svg.find("</svg>") > svg.find("</text>"));
+  CHECK(svg.find("<path") == std::string::npos);  // no letter is an outline
+  render::write_drawing_pdf(folder / "a.pdf", drawing);
+  const std::string pdf = bytes(folder / "a.pdf");
+  CHECK_THAT(pdf, Catch::Contains("DejaVuSans") && Catch::Contains("FontFile2"));
+  render::write_drawing_pdf(folder / "b.pdf", drawing);
+  CHECK(pdf == bytes(folder / "b.pdf"));
+  render::write_drawing_png(folder / "a.png", drawing);
+  const std::string png = bytes(folder / "a.png");
+  const std::size_t at = png.find("pHYs");
+  REQUIRE(at != std::string::npos);
+  const auto number = [&](std::size_t from) {
+    unsigned value = 0;
+    for (std::size_t k = from; k < from + 4; ++k) value = value << 8 | static_cast<unsigned char>(png[k]);
+    return value;
+  };
+  CHECK(number(at + 4) == 11811);  // 300 / 0.0254 m
+  CHECK(number(at + 8) == 11811);
+  CHECK(png[at + 12] == 1);
 }

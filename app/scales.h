@@ -1,0 +1,23 @@
+// How large the quantities of a scene naturally are. What lies far below that is rounding, in whatever unit.
+#pragma once
+
+#include "sim/fields.h"
+#include "sim/parameters.h"
+
+namespace app {
+
+struct NaturalScales {
+  double length = 1;    ///< area radius of the first vesicle
+  double velocity = 1;  ///< the largest of background flow, bending and weight (the viscosity is 1)
+  double digits = 0;    ///< of positions, relative to the length: many where vesicles lie far from the origin
+  double solve = 0;     ///< relative error that the linear solver leaves
+  int order = 1;        ///< highest degree of the surfaces
+
+  /// Of a field, in units of the scene.
+  double size_of(sim::FieldScale) const;
+  /// Differences below it are no property of the field.
+  double rounding_of(sim::FieldScale) const;
+};
+NaturalScales natural_scales(const sim::Scene&, const sim::State&, double area_radius);
+
+}  // namespace app
