@@ -4,9 +4,8 @@
 #include "app/scene_file.h"
 
 #include "sim/simulate.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 #include <string>
 

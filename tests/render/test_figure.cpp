@@ -4,9 +4,8 @@
 #include "render/plot_marks.h"
 
 #include "surfaces.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>

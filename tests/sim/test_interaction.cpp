@@ -1,7 +1,6 @@
 #include "sim/placements.h"
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <omp.h>
 
