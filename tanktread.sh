@@ -10,7 +10,7 @@ root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 build=$root/build/release
 
 # What the program needs. Where names are joined by '|', the first that the system offers is enough.
-packages=(g++ cmake ninja-build pkg-config libeigen3-dev libfftw3-dev libhdf5-dev libfmt-dev zlib1g-dev
+packages=(g++ cmake ninja-build 'pkgconf|pkg-config' libeigen3-dev libfftw3-dev libhdf5-dev libfmt-dev zlib1g-dev
           libtomlplusplus-dev libcli11-dev
           libglm-dev libpng-dev libcairo2-dev libfreetype-dev libgl-dev libegl-dev fonts-dejavu-core
           'libosmesa6|libegl1' 'libosmesa6|libgl1-mesa-dri' ffmpeg)
@@ -51,7 +51,7 @@ offered_packages() {
   for word in "$@"; do
     found=-$word
     for name in ${word//|/ }; do
-      if LC_ALL=C apt-cache policy "$name" 2>/dev/null | grep -q '^  Candidate: [^(]'; then
+      if grep -q '^  Candidate: [^(]' <<<"$(LC_ALL=C apt-cache policy "$name" 2>/dev/null)"; then
         found=$name
         break
       fi
@@ -82,8 +82,8 @@ install_packages() {
   fi
   if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null; then
-      mapfile -t missing < <(offered_packages ${required[@]+"${required[@]}"} ${optional[@]+"${optional[@]}"} |
-                             sed 's/^-\([^|]*\).*/\1/')
+      mapfile -t missing < <(offered_packages ${required[@]+"${required[@]}"} | sed 's/^-\(.*|\)\{0,1\}//'
+                             offered_packages ${optional[@]+"${optional[@]}"} | grep -v '^-')
       echo "tanktread.sh: these packages are missing; please install them as root:" >&2
       echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
       exit 1

@@ -55,7 +55,14 @@ def layering():
             words = GL_WORDS.search(path.read_text())
             if words and not GL_FILES.match(where):
                 findings.append(f"{where} mentions '{words.group(0)}', which only render/context* may")
-    return findings
+    return findings + frameworks()
+
+
+def frameworks():
+    """Tests reach Catch2 through the one header that knows its versions."""
+    return [f"{path.relative_to(ROOT)} includes <{include}>: tests/support/catch.h serves with every version of Catch2"
+            for path in sorted((ROOT / "tests").rglob("*")) if path.suffix in (".h", ".cpp") and path.parent.name != "support"
+            for include in includes(path) if include.startswith("catch2/")]
 
 
 def reference(program):
