@@ -87,15 +87,14 @@ test_suite() {
               'cd /root/tanktread && ./tanktread.sh run scenes/tank-treading.toml -o out && test -s out/movie.mp4')
   tests=$(timed "$systems/$suite-test.log" "$work" 'cd /root/tanktread && ./tanktread.sh test')
   tally=$(sed -n 's/^.* \([0-9]*\) tests failed out of \([0-9]*\)$/\1 of \2 failed/p' "$systems/$suite-test.log" | tail -n 1)
-  # The package is made in the first system, by the commands of docs/systems.md, and installed and used in a second.
+  # The package is made in the first system, of what is built there, and installed and used in a second.
   package=$(timed "$systems/$suite-package.log" "$work" \
                   'cd /root/tanktread && apt-get install -y -q --no-install-recommends dpkg-dev file &&
-                   cmake -S . -B build/package -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr \
-                         -DBUILD_TESTING=OFF &&
-                   cmake --build build/package && cd build/package && cpack -G DEB')
+                   cmake --preset release -DBUILD_TESTING=OFF && cmake --build build/release &&
+                   cd build/release && cpack -G DEB')
   if [ "${package#ok}" != "$package" ]; then
     bare "$suite" "$clean" >>"$systems/$suite-debootstrap.log" 2>&1
-    cp "$work"/root/tanktread/build/package/*.deb "$clean/root/"
+    cp "$work"/root/tanktread/build/release/*.deb "$clean/root/"
     package=$(timed "$systems/$suite-installed.log" "$clean" \
                     'apt-get update -q && apt-get install -y -q /root/*.deb && cd /root &&
                      tanktread run /usr/share/tanktread/scenes/tank-treading.toml -o out && test -s out/movie.mp4 &&
