@@ -234,7 +234,8 @@ ManualCommand described(const CLI::App& app, std::string name) {
   for (const CLI::Option* option : app.get_options()) {
     ManualEntry entry;
     entry.is_option = !option->get_positional();
-    entry.names = entry.is_option ? option->get_name(false, true) : option->get_name(true);
+    entry.names = entry.is_option ? option->get_name(false, true)
+                  : option->get_required() ? option->get_name(true) : "[" + option->get_name(true) + "]";
     const std::string value = option->get_items_expected_max() > 0 ? option->get_type_name() : "";
     entry.value = value.substr(0, value.find_first_of(": "));  // without the range that is checked
     entry.meaning = option->get_description();

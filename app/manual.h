@@ -8,7 +8,7 @@ namespace app {
 
 /// One option or one word of a command, as the command line declares it.
 struct ManualEntry {
-  std::string names;    ///< "-o,--output", or "SCENE" of a word
+  std::string names;    ///< "-o,--output"; "SCENE" of a word, "[KIND]" of one that may be left out
   std::string value;    ///< what follows: "FILE"; empty: nothing does, or it is a word
   std::string meaning;  ///< no full stop
   bool is_option = true;
@@ -21,8 +21,8 @@ struct ManualCommand {
 };
 
 /// tanktread.1 in the language of man(7).
-std::string manual_page(const std::vector<ManualCommand>& commands);
+std::string manual_page(const std::vector<ManualCommand>& offered);
 /// Commands, options and the words of the catalogues, for bash.
-std::string bash_completion(const std::vector<ManualCommand>& commands);
+std::string bash_completion(const std::vector<ManualCommand>& offered);
 
 }  // namespace app
