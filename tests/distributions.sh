@@ -84,7 +84,8 @@ test_suite() {
   [ -z "$cache" ] || inside "$work" 'apt-get update -q && apt-get install -y -q --no-install-recommends ccache' \
                             >"$systems/$suite-ccache.log" 2>&1
   run=$(timed "$systems/$suite-run.log" "$work" \
-              'cd /root/tanktread && ./tanktread.sh run scenes/tank-treading.toml -o out && test -s out/movie.mp4')
+              'cd /root/tanktread && ./tanktread.sh run scenes/tank-treading.toml -o out && test -s out/movie.mp4 &&
+               ./tanktread.sh info out/frames/000000.png')
   tests=$(timed "$systems/$suite-test.log" "$work" 'cd /root/tanktread && ./tanktread.sh test')
   tally=$(sed -n 's/^.* \([0-9]*\) tests failed out of \([0-9]*\)$/\1 of \2 failed/p' "$systems/$suite-test.log" | tail -n 1)
   # The package is made in the first system, of what is built there, and installed and used in a second.
@@ -100,7 +101,7 @@ test_suite() {
                      tanktread run /usr/share/tanktread/scenes/tank-treading.toml -o out && test -s out/movie.mp4 &&
                      test -s /usr/share/man/man1/tanktread.1')
   fi
-  back_end=$(sed -n 's/^OpenGL: //p' "$systems/$suite-run.log" | head -n 1)
+  back_end=$(sed -n 's/^ *back_end[ :=]*//p' "$systems/$suite-run.log" | head -n 1)
   echo "| $suite $(cat "$work/etc/debian_version") | $run | $tests${tally:+; $tally} | $package | GCC $(version "$work" g++)," \
        "CMake $(version "$work" cmake), Eigen $(version "$work" libeigen3-dev), HDF5 $(version "$work" libhdf5-dev)," \
        "fmt $(version "$work" libfmt-dev), Cairo $(version "$work" libcairo2-dev)," \

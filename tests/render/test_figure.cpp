@@ -101,7 +101,7 @@ TEST_CASE("each name in an SVG is defined once, counted from 0 in its kind, and 
     std::set<std::string> names;
     const std::regex definition(" id=\"([A-Za-z-]*)([0-9]*)\"");
     for (std::sregex_iterator at(svg.begin(), svg.end(), definition), end; at != end; ++at) {
-      CHECK((*at)[2] == std::to_string(next[(*at)[1]]++));
+      CHECK(at->str(2) == std::to_string(next[at->str(1)]++));
       CHECK(names.insert(at->str(1) + at->str(2)).second);
       pictures += at->str(1).find("image") != std::string::npos || at->str(1).find("source") != std::string::npos;
     }
