@@ -19,7 +19,7 @@ packages=(g++ cmake ninja-build 'pkgconf|pkg-config' libeigen3-dev libfftw3-dev 
 test_packages=(catch2 python3)
 
 # What some tests need: the other back end of OpenGL, trajectories and meshes read back, benchmarks, fuzzing, a processor
-# without AVX2. Where the system does not offer one of these, its tests are skipped.
+# without AVX2. Where one of these cannot be installed, its tests are skipped.
 optional_packages=(libosmesa6 libegl1 libgl1-mesa-dri libbenchmark-dev python3-h5py python3-vtk9 clang libclang-rt-dev
                    qemu-user)
 
@@ -60,55 +60,71 @@ offered_packages() {
   done
 }
 
-# install_packages REQUIRED... -- OPTIONAL...
+# install_packages REQUIRED... -- OPTIONAL...: without those required the script ends; the others are asked for once.
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "tanktread.sh: this is no Debian; packages are taken as installed" >&2
     return
   fi
-  local required=() optional=() offered missing=() as_root=() word
+  local required=() optional=() as_root=() words=() word
   while [ "$1" != -- ]; do
-    required+=("$1")
+    words+=("$1")
     shift
   done
   shift
-  mapfile -t required < <(missing_packages "${required[@]}")
+  mapfile -t required < <(missing_packages "${words[@]}")
   [ $# -eq 0 ] || mapfile -t optional < <(missing_packages "$@")
-  # What is only wished for, and not offered by the lists that are here, is no reason to fetch new lists each time.
+  # What is only wished for, and not offered by the lists that are here, is no reason to fetch new ones each time.
   if [ ${#required[@]} -eq 0 ]; then
     [ ${#optional[@]} -gt 0 ] || return 0
-    offered=$(offered_packages "${optional[@]}")
-    grep -qv '^-' <<<"$offered" || return 0
+    grep -qv '^-' <<<"$(offered_packages "${optional[@]}")" || return 0
   fi
   if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null; then
-      mapfile -t missing < <(offered_packages ${required[@]+"${required[@]}"} | sed 's/^-\(.*|\)\{0,1\}//'
-                             offered_packages ${optional[@]+"${optional[@]}"} | grep -v '^-')
-      echo "tanktread.sh: these packages are missing; please install them as root:" >&2
-      echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
-      exit 1
+      [ ${#optional[@]} -eq 0 ] || skipped "${optional[@]}"
+      [ ${#required[@]} -gt 0 ] || return 0
+      by_hand $(offered_packages "${required[@]}" | sed 's/^-\(.*|\)\{0,1\}//')
     fi
     as_root=(sudo)
   fi
-  "${as_root[@]}" apt-get update -q >&2 || fail "the lists of packages could not be fetched (apt-get update)"
-  for word in $(offered_packages ${required[@]+"${required[@]}"}); do
-    [ "${word#-}" = "$word" ] || fail "this system does not offer the package ${word#-}, which is needed"
-    missing+=("$word")
-  done
-  for word in $(offered_packages ${optional[@]+"${optional[@]}"}); do
+  local update=("${as_root[@]}" apt-get update -q)
+  local install=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends)
+  if ! "${update[@]}" >&2; then
+    [ ${#required[@]} -eq 0 ] || fail "the lists of packages could not be fetched (apt-get update)"
+    skipped "${optional[@]}"
+    return 0
+  fi
+  if [ ${#required[@]} -gt 0 ]; then
+    mapfile -t words < <(offered_packages "${required[@]}")
+    for word in "${words[@]}"; do
+      [ "${word#-}" = "$word" ] || fail "this system does not offer the package ${word#-}, which is needed"
+    done
+    echo "tanktread.sh: installing ${words[*]}" >&2
+    "${install[@]}" "${words[@]}" >&2 || by_hand "${words[@]}"
+  fi
+  [ ${#optional[@]} -gt 0 ] || return 0
+  required=("${optional[@]}")
+  optional=()
+  for word in $(offered_packages "${required[@]}"); do
     if [ "${word#-}" = "$word" ]; then
-      missing+=("$word")
+      optional+=("$word")
     else
-      echo "tanktread.sh: this system does not offer ${word#-}; its tests are skipped" >&2
+      skipped "${word#-}"
     fi
   done
-  echo "tanktread.sh: installing ${missing[*]}" >&2
-  if ! "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >&2
-  then
-    echo "tanktread.sh: the packages could not be installed; please do it by hand:" >&2
-    echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
-    exit 1
-  fi
+  [ ${#optional[@]} -gt 0 ] || return 0
+  echo "tanktread.sh: installing ${optional[*]}" >&2
+  "${install[@]}" "${optional[@]}" >&2 || skipped "${optional[@]}"
+}
+
+# skipped PACKAGE...: says what there will be no tests of.
+skipped() { echo "tanktread.sh: tests that need these packages are skipped: $*" >&2; }
+
+# by_hand PACKAGE...: ends the script.
+by_hand() {
+  echo "tanktread.sh: these packages are missing and could not be installed; please do it by hand, as root:" >&2
+  echo "  apt-get install --no-install-recommends $*" >&2
+  exit 1
 }
 
 # configure [OPTIONS]: CMake's options, and those of the environment variable TANKTREAD_CMAKE_OPTIONS.
