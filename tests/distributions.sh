@@ -102,7 +102,7 @@ test_suite() {
                      test -s /usr/share/man/man1/tanktread.1')
   fi
   back_end=$(sed -n 's/^ *back_end[ :=]*//p' "$systems/$suite-run.log" | head -n 1)
-  echo "| $suite $(cat "$work/etc/debian_version") | $run | $tests${tally:+; $tally} | $package | GCC $(version "$work" g++)," \
+  echo "| $suite $(cat "$work/etc/debian_version") | $run | $tests${tally:+; $tally} | $package | GCC $(chroot "$work" g++ -dumpfullversion)," \
        "CMake $(version "$work" cmake), Eigen $(version "$work" libeigen3-dev), HDF5 $(version "$work" libhdf5-dev)," \
        "fmt $(version "$work" libfmt-dev), Cairo $(version "$work" libcairo2-dev)," \
        "Mesa $(version "$work" libgl1-mesa-dri libosmesa6), OSMesa $(version "$work" libosmesa6)," \
