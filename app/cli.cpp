@@ -256,13 +256,15 @@ std::vector<ManualCommand> described(const CLI::App& program) {
 
 /// A page that is printed instead of doing anything, as --help is.
 void add_page(CLI::App& program, const char* name, const char* meaning, std::string (*page)(const std::vector<ManualCommand>&)) {
-  program.add_flag_callback(
-      name,
-      [&program, page] {
-        fmt::print("{}", page(described(program)));
-        throw CLI::Success();
-      },
-      meaning);
+  program
+      .add_flag_callback(
+          name,
+          [&program, page] {
+            fmt::print("{}", page(described(program)));
+            throw CLI::Success();
+          },
+          meaning)
+      ->trigger_on_parse();  // before a command is found missing
 }
 
 /// A first word that is no command gets a suggestion, which CLI11 does not give.
