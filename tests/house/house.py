@@ -108,7 +108,7 @@ def itself():
 def pages(program):
     """Every command line in README.md and docs/ names a command that exists and scenes that are there."""
     help_text = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
-    commands = set(re.findall(r"^\s\s(\w+)\s", help_text.split("Subcommands:")[1], re.M)) | {"test"}
+    commands = set(re.findall(r"^  (\w+)\s", re.split("^subcommands:", help_text, flags=re.M | re.I)[1], re.M)) | {"test"}
     findings = []
     files = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
     for path in files:
