@@ -2,6 +2,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "manual.h"
 #include "message.h"
 #include "version.h"
 
@@ -227,6 +228,45 @@ void add_command(CLI::App& program, const Command& command, Options& options) {
     if (takes(command, row.name)) row.add(*sub, options);
 }
 
+/// What a command line offers, for the manual page and for completion.
+ManualCommand described(const CLI::App& app, std::string name) {
+  ManualCommand command{std::move(name), app.get_description(), {}};
+  for (const CLI::Option* option : app.get_options()) {
+    ManualEntry entry;
+    entry.is_option = !option->get_positional();
+    entry.names = entry.is_option ? option->get_name(false, true)
+                  : option->get_required() ? option->get_name(true) : "[" + option->get_name(true) + "]";
+    const std::string value = option->get_items_expected_max() > 0 ? option->get_type_name() : "";
+    entry.value = value.substr(0, value.find_first_of(": "));  // without the range that is checked
+    entry.meaning = option->get_description();
+    entry.many = option->get_items_expected_max() > 1;
+    command.entries.push_back(std::move(entry));
+  }
+  return command;
+}
+
+std::vector<ManualCommand> described(const CLI::App& program) {
+  std::vector<ManualCommand> all{described(program, "")};
+  for (const Command& row : commands) {
+    const std::string name(row.name);
+    all.push_back(described(*program.get_subcommand(name), name));
+  }
+  return all;
+}
+
+/// A page that is printed instead of doing anything, as --help is.
+void add_page(CLI::App& program, const char* name, const char* meaning, std::string (*page)(const std::vector<ManualCommand>&)) {
+  program
+      .add_flag_callback(
+          name,
+          [&program, page] {
+            fmt::print("{}", page(described(program)));
+            throw CLI::Success();
+          },
+          meaning)
+      ->trigger_on_parse();  // before a command is found missing
+}
+
 /// A first word that is no command gets a suggestion, which CLI11 does not give.
 void check_command_word(int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
@@ -258,12 +298,16 @@ int main(int argc, char** argv) {
     Options options;
     CLI::App program("Tanktread simulates lipid vesicles in Stokes flow and makes movies and figures.", "tanktread");
     program.set_version_flag("--version", "tanktread " + version() + " (" + build() + ")");
+    add_page(program, "--manual", "print the manual page, for man(1)", manual_page);
+    add_page(program, "--bash-completion", "print the completion for bash", bash_completion);
     program.require_subcommand(1);
     for (const Command& command : commands) add_command(program, command, options);
     try {
       program.parse(argc, argv);
     } catch (const CLI::Success& success) {
-      return program.exit(success);
+      const int status = program.exit(success);
+      require_output();
+      return status;
     } catch (const CLI::ParseError& error) {
       tell(error.what());
       return 2;

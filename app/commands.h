@@ -20,6 +20,8 @@ int compare(const Options&);  ///< 0 same, 1 different, 2 could not compare
 int list(const Options&);
 int reproduce(const Options&);
 
+std::vector<std::string_view> reproduction_names();  ///< the items of `reproduce`
+
 struct Command {
   std::string_view name, meaning;
   std::string_view word;     ///< what the first positional argument is called; empty: there is none but files

@@ -123,6 +123,16 @@ std::string reference_page() {
   return page;
 }
 
+std::vector<ReferenceKey> reference_keys() {
+  std::vector<ReferenceKey> keys;
+  each_parameter([&](const sim::Section& section, bool list, const sim::Parameter& p, const std::string& fallback,
+                     const std::string& allowed) {
+    keys.push_back({std::string(section.name), std::string(section.meaning), std::string(p.name), std::string(p.meaning),
+                    std::string(p.unit), fallback, allowed, list});
+  });
+  return keys;
+}
+
 std::string parameter_list() {
   std::string text;
   std::string current;

@@ -1,7 +1,8 @@
-// docs/reference.md: every parameter, kind and column, generated from where each is declared.
+// docs/reference.md and its like: every parameter, kind and column, generated from where each is declared.
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace app {
 
@@ -9,5 +10,13 @@ namespace app {
 std::string reference_page();
 /// `tanktread list parameters`: the same for a terminal, parameters only.
 std::string parameter_list();
+
+/// A parameter of a scene file, in words.
+struct ReferenceKey {
+  std::string section, section_meaning, name, meaning, unit, fallback, allowed;
+  bool list = false;  ///< the section is written [[section]]
+};
+/// All of them, in the order of the reference.
+std::vector<ReferenceKey> reference_keys();
 
 }  // namespace app

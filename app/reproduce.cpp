@@ -37,13 +37,18 @@ void print_catalogue() {
 
 }  // namespace
 
+std::vector<std::string_view> reproduction_names() {
+  std::vector<std::string_view> names{"all"};
+  for (const Reproduction& item : reproductions) names.push_back(item.name);
+  return names;
+}
+
 int reproduce(const Options& options) {
   if (options.word.empty()) {
     print_catalogue();
     return 0;
   }
-  std::vector<std::string_view> names{"all"};
-  for (const Reproduction& item : reproductions) names.push_back(item.name);
+  const std::vector<std::string_view> names = reproduction_names();
   if (std::find(names.begin(), names.end(), options.word) == names.end())
     throw std::runtime_error(fmt::format("'{}' is not a table or figure to reproduce{}", options.word,
                                          sim::suggestion(options.word, names)));

@@ -6,6 +6,7 @@
 #include <cairo-svg.h>
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -84,25 +85,41 @@ cairo_status_t append(void* text, const unsigned char* data, unsigned int length
   return CAIRO_STATUS_SUCCESS;
 }
 
-// Cairo numbers surfaces and pictures through the life of the process: here they are numbered through the file.
+bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_'; }
+
+/// The name that begins there.
+std::string name_at(const std::string& svg, std::size_t at) {
+  std::size_t end = at;
+  while (end < svg.size() && is_name(svg[end])) ++end;
+  return svg.substr(at, end - at);
+}
+
+/// Cairo numbers pictures, masks and whatever else has an id through the life of the process, each version others of them:
+/// here all are numbered through the file, each kind in the order in which they are defined.
 std::string renumbered(const std::string& svg) {
-  std::string result;
+  constexpr std::string_view definition = " id=\"";
   std::map<std::string, std::string> names;
-  constexpr std::string_view kinds[] = {"surface", "image"};
+  std::map<std::string, int> counts;
+  for (std::size_t at = 0; (at = svg.find(definition, at)) != std::string::npos;) {
+    at += definition.size();
+    const std::string name = name_at(svg, at);
+    const std::string kind = name.substr(0, name.find_first_of("0123456789"));
+    if (names.try_emplace(name, kind + std::to_string(counts[kind])).second) ++counts[kind];
+  }
+  std::string result;
   for (std::size_t at = 0; at < svg.size();) {
-    std::size_t length = 0;
-    if (at > 0 && (svg[at - 1] == '"' || svg[at - 1] == '#'))
-      for (const std::string_view kind : kinds)
-        if (svg.compare(at, kind.size(), kind) == 0) length = kind.size();
-    if (length == 0) {
+    const bool reference = svg[at] == '#';
+    if (!reference && svg.compare(at, definition.size(), definition) != 0) {
       result += svg[at++];
       continue;
     }
-    std::size_t end = at + length;
-    while (end < svg.size() && svg[end] >= '0' && svg[end] <= '9') ++end;
-    const std::string name = svg.substr(at, end - at);
-    result += names.try_emplace(name, svg.substr(at, length) + std::to_string(names.size())).first->second;
-    at = end;
+    const std::size_t length = reference ? 1 : definition.size();
+    result += svg.substr(at, length);
+    at += length;
+    const std::string name = name_at(svg, at);
+    const auto found = names.find(name);
+    result += found == names.end() ? name : found->second;
+    at += name.size();
   }
   return result;
 }

@@ -14,11 +14,12 @@ namespace {
 GlContext::BackEnd open_first_of_both(EglDevices devices) {
   try {
     return open_osmesa();
-  } catch (const GlUnavailable& osmesa) {
+  } catch (const GlUnavailable&) {
+    // OSMesa is the one that few systems still have: what EGL lacks is what can be mended.
     try {
       return open_egl(devices, -1);
     } catch (const GlUnavailable& egl) {
-      throw GlUnavailable("no OpenGL without a window: " + osmesa.sentence + "; " + egl.sentence);
+      throw GlUnavailable("no OpenGL without a window: " + egl.sentence);
     }
   }
 }
@@ -93,7 +94,7 @@ GlContext::GlContext(const GlChoice& choice) {
     information_.software = information_.software || information_.renderer.find(rasteriser) != std::string::npos;
   if (choice.kind == "software" && !information_.software)
     throw std::runtime_error("--gl software found only " + information_.renderer +
-                             ": install the package libosmesa6, or libegl1 with libgl1-mesa-dri");
+                             ": " + egl_packages);
 }
 
 GlContext::~GlContext() = default;

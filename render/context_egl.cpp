@@ -30,12 +30,9 @@ struct Egl {
   PFNEGLQUERYDEVICESTRINGEXTPROC QueryDeviceString = nullptr;
 };
 
-constexpr const char* how_to_install =
-    "install the packages libegl1 and libgl1-mesa-dri (apt install libegl1 libgl1-mesa-dri)";
-
 Egl load_egl(const LibraryNames& names) {
   void* handle = open_library(names);
-  if (!handle) throw GlUnavailable(std::string("EGL is not installed: ") + how_to_install);
+  if (!handle) throw GlUnavailable(std::string("EGL is not installed: ") + egl_packages);
   Egl egl;
 #define RENDER_EGL_LOAD(Type, Name)                                \
   egl.Name = reinterpret_cast<Type>(::dlsym(handle, "egl" #Name)); \
@@ -113,7 +110,7 @@ GlContext::BackEnd open_egl(EglDevices which, int device, const LibraryNames& na
     throw GlUnavailable("EGL device " + std::to_string(device) + " gives no OpenGL 3.3 core context");
   if (auto object = try_display(egl, egl.GetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)))
     return back_end(std::move(object), "EGL surfaceless");
-  throw GlUnavailable(std::string("EGL finds no device with OpenGL 3.3 core: ") + how_to_install);
+  throw GlUnavailable(std::string("EGL finds no device with OpenGL 3.3 core: ") + egl_packages);
 }
 
 }  // namespace render

@@ -28,14 +28,14 @@ struct Library {
 
 Library load_osmesa(const LibraryNames& names) {
   void* handle = open_library(names);
-  if (!handle) throw GlUnavailable("OSMesa is not installed: install the package libosmesa6 (apt install libosmesa6)");
+  if (!handle) throw GlUnavailable("OSMesa is not installed, and newer systems do not offer it: --gl egl draws the same pixels");
   Library l;
   l.create = reinterpret_cast<CreateContext>(::dlsym(handle, "OSMesaCreateContextAttribs"));
   l.make_current = reinterpret_cast<MakeCurrent>(::dlsym(handle, "OSMesaMakeCurrent"));
   l.destroy = reinterpret_cast<DestroyContext>(::dlsym(handle, "OSMesaDestroyContext"));
   l.look_up = reinterpret_cast<GetProcAddress>(::dlsym(handle, "OSMesaGetProcAddress"));
   if (!l.create || !l.make_current || !l.destroy || !l.look_up)
-    throw GlUnavailable("the installed OSMesa is too old: install the package libosmesa6 12 or newer");
+    throw GlUnavailable("the installed OSMesa is too old; 12 or newer is needed, or --gl egl");
   return l;
 }
 

@@ -20,7 +20,7 @@ VesicleMeasures measure(Plans& plans, const VesicleState& v, double area0, doubl
   const auto& M = whole.moments;
   m.inclination_deg = inclination(M) * 180 / std::numbers::pi;
   const Vec3 eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M, Eigen::EigenvaluesOnly).eigenvalues();
-  m.axes = (5 * eigenvalues.reverse() / whole.volume).cwiseSqrt();
+  for (int i = 0; i < 3; ++i) m.axes[i] = std::sqrt(5 * eigenvalues[2 - i] / whole.volume);
   m.energy = whole.h_squared / (4 * std::numbers::pi);
   const Matrix u = basis.synthesize(v.velocity).values, sigma = basis.synthesize(v.tension).values;
   m.velocity_l2 = std::sqrt(integrate(g, u.rowwise().squaredNorm()));

@@ -166,7 +166,7 @@ std::vector<Coefficients> induced_velocity(const Interaction& w, std::span<const
     const auto add = [&](const std::vector<int>& list, const Sources& sources, const Samples& samples, bool dual) {
       if (list.empty()) return;
       Matrix sum = Matrix::Zero(Eigen::Index(list.size()), 3);
-      add_direct_sum(sources, samples.force, dual ? &samples.dual : nullptr, w.targets[i](list, Eigen::all), sum);
+      add_direct_sum(sources, samples.force, dual ? &samples.dual : nullptr, w.targets[i](list, Eigen::seqN(0, 3)), sum);
       for (std::size_t k = 0; k < list.size(); ++k) velocity.row(list[k]) += sum.row(Eigen::Index(k));
     };
     for (int j = 0; j < n; ++j) {

@@ -10,19 +10,28 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+/// At a pole there is no derivative along a circle of latitude; a point that is off by less than 1e-6 has one.
+Vec3 beside_the_pole(const Vec3& s) {
+  return std::hypot(s[0], s[1]) < 1e-9 ? Vec3(s[0] + 1e-6, s[1], s[2]).normalized() : s;
+}
+
+Vec3 normal_at(const Coefficients& x, const Vec3& s) {
+  const FirstDerivatives y = sample_points_first(x, s.transpose());
+  const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose();
+  return a.cross(b).normalized();
+}
+
 }  // namespace
 
 NearestPoint nearest_point(const Coefficients& x, const Vec3& target, const Vec3& start) {
   // Newton on |x(s) - target|^2 / 2 along great circles through s; a step that does not come nearer is halved.
-  Vec3 s = start.normalized();
+  Vec3 s = beside_the_pole(start.normalized());
   SecondDerivatives y = sample_points_second(x, s.transpose());
   const auto distance_of = [&](const SecondDerivatives& at) { return (at.value.row(0).transpose() - target).norm(); };
   double distance = distance_of(y);
-  Vec3 normal = Vec3::UnitZ();
   for (int iteration = 0; iteration < 50; ++iteration) {
     const auto [e_t, e_f, rho] = sphere_frame(s);
     const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose() / rho, miss = target - y.value.row(0).transpose();
-    normal = a.cross(b).normalized();
     const Eigen::Vector2d slope(a.dot(miss), b.dot(miss));
     Eigen::Matrix2d metric, curved;
     metric << a.dot(a), a.dot(b), a.dot(b), b.dot(b);
@@ -52,7 +61,7 @@ NearestPoint nearest_point(const Coefficients& x, const Vec3& target, const Vec3
     if (!nearer || last) break;
   }
   const Vec3 position = y.value.row(0).transpose();
-  return {s, position, distance, normal.dot(target - position) < 0};
+  return {s, position, distance, normal_at(x, beside_the_pole(s)).dot(target - position) < 0};
 }
 
 namespace {

@@ -67,7 +67,7 @@ std::vector<Contribution> contributions(const FlowSource& source, const Matrix& 
     if (lists[l].empty()) continue;
     const FlowSource::Level& level = source.levels[l];
     Matrix sum = Matrix::Zero(Eigen::Index(lists[l].size()), 3);
-    add_direct_sum(level.sources, level.force, level.dual.size() ? &level.dual : nullptr, points(lists[l], Eigen::all), sum);
+    add_direct_sum(level.sources, level.force, level.dual.size() ? &level.dual : nullptr, points(lists[l], Eigen::seqN(0, 3)), sum);
     for (std::size_t k = 0; k < lists[l].size(); ++k) all[lists[l][k]].velocity = sum.row(Eigen::Index(k)).transpose();
   }
   return all;

@@ -1,8 +1,7 @@
 // The program as a user meets it: exit statuses, messages, and what is left on the disk.
 #include "desk.h"
 #include "sim/trajectory.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using Catch::Contains;
 using commands::Desk;

@@ -1,9 +1,8 @@
 // `tanktread compare` as a project's CI meets it.
 #include "app/printable.h"
 #include "render/compare.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
-
-#include <catch2/catch.hpp>
 
 #include <sys/stat.h>
 

@@ -2,9 +2,8 @@
 #include "app/quantities.h"
 #include "render/figure.h"
 #include "render/image.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
-
-#include <catch2/catch.hpp>
 
 #include <fmt/format.h>
 

@@ -5,9 +5,9 @@
 #include "app/streamlines.h"
 
 #include "sim/simulate.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include <string>

@@ -8,8 +8,8 @@
 #include "render/section.h"
 #include "sim/simulate.h"
 #include "sim/trajectory.h"
+#include "tests/support/catch.h"
 
-#include <catch2/catch.hpp>
 #include <fcntl.h>
 #include <set>
 #include <sys/file.h>

@@ -4,9 +4,9 @@
 #include "app/scene_text.h"
 #include "sim/basis.h"
 #include "sim/shapes.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 

@@ -2,9 +2,8 @@
 #include "app/frames.h"
 #include "app/scene_file.h"
 #include "app/scene_text.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 using app::parse_scene;
 using app::Settings;

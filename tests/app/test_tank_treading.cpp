@@ -1,8 +1,7 @@
 // What the figure of tank-treading is made of.
 #include "app/tank_treading.h"
 #include "sim/shapes.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <cmath>
 #include <numbers>

@@ -3,7 +3,7 @@
 #include "render/image.h"
 #include "sim/trajectory.h"
 
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 #include <csignal>
 
 #include <sys/stat.h>

@@ -5,7 +5,7 @@
 #include "desk.h"
 #include "render/image.h"
 
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 #include <csignal>
 #include <cstdlib>
 #include <random>

@@ -1,3 +1,3 @@
 #!/bin/sh
-echo "skipped: libFuzzer is missing (Debian: apt-get install clang libclang-rt-14-dev)"
+echo "skipped: libFuzzer is missing (Debian: apt-get install clang libclang-rt-dev)"
 exit 77

@@ -55,7 +55,14 @@ def layering():
             words = GL_WORDS.search(path.read_text())
             if words and not GL_FILES.match(where):
                 findings.append(f"{where} mentions '{words.group(0)}', which only render/context* may")
-    return findings
+    return findings + frameworks()
+
+
+def frameworks():
+    """Tests reach Catch2 through the one header that knows its versions."""
+    return [f"{path.relative_to(ROOT)} includes <{include}>: tests/support/catch.h serves with every version of Catch2"
+            for path in sorted((ROOT / "tests").rglob("*")) if path.suffix in (".h", ".cpp") and path.parent.name != "support"
+            for include in includes(path) if include.startswith("catch2/")]
 
 
 def reference(program):
@@ -101,7 +108,7 @@ def itself():
 def pages(program):
     """Every command line in README.md and docs/ names a command that exists and scenes that are there."""
     help_text = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
-    commands = set(re.findall(r"^\s\s(\w+)\s", help_text.split("Subcommands:")[1], re.M)) | {"test"}
+    commands = set(re.findall(r"^  (\w+)\s", re.split("^subcommands:", help_text, flags=re.M | re.I)[1], re.M)) | {"test"}
     findings = []
     files = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
     for path in files:

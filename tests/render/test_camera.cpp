@@ -2,9 +2,8 @@
 #include "render/camera.h"
 
 #include "surfaces.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 namespace {
 

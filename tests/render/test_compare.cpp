@@ -2,9 +2,8 @@
 #include "render/compare.h"
 #include "render/flip.h"
 
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 #include <sys/stat.h>
 

@@ -4,14 +4,16 @@
 #include "render/plot_marks.h"
 
 #include "surfaces.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <regex>
+#include <set>
 #include <sstream>
 
 using sim::Vec3;
@@ -89,6 +91,26 @@ TEST_CASE("every figure of the catalogue is written as PNG, SVG, PDF and CSV, tw
     for (const std::uint8_t v : image.pixels) ink += v < 128;
     CHECK(ink > 3000);
   }
+}
+
+TEST_CASE("each name in an SVG is defined once, counted from 0 in its kind, and each reference finds one") {
+  const support::TemporaryFolder folder;
+  std::size_t pictures = 0;
+  for (const render::FigureRow& row : render::figures()) {
+    INFO(row.name);
+    const std::string svg = support::read_file(render::write_figure(row.draw(input()), folder / std::string(row.name))[1]);
+    std::map<std::string, int> next;
+    std::set<std::string> names;
+    const std::regex definition(" id=\"([A-Za-z-]*)([0-9]*)\"");
+    for (std::sregex_iterator at(svg.begin(), svg.end(), definition), end; at != end; ++at) {
+      CHECK(at->str(2) == std::to_string(next[at->str(1)]++));
+      CHECK(names.insert(at->str(1) + at->str(2)).second);
+      pictures += at->str(1).find("image") != std::string::npos || at->str(1).find("source") != std::string::npos;
+    }
+    const std::regex reference("(?:href=\"|url\\()#([\\w-]+)");
+    for (std::sregex_iterator at(svg.begin(), svg.end(), reference), end; at != end; ++at) CHECK(names.contains(at->str(1)));
+  }
+  CHECK(pictures > 0);  // what Cairo counts through the process
 }
 
 TEST_CASE("the CSV of cross-sections holds points of the sections") {

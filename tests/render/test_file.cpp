@@ -1,9 +1,9 @@
 // The one function that puts files of results on the disk.
 #include "render/canvas.h"
 #include "sim/result_file.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
-#include <catch2/catch.hpp>
 
 #include <set>
 #include <system_error>

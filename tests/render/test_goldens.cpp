@@ -3,8 +3,7 @@
 #include "render/draw.h"
 
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <cstdlib>
 #include <filesystem>

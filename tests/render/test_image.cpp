@@ -1,9 +1,8 @@
 // Pictures in memory and in PNG files.
 #include "render/image.h"
 
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 #include <cmath>
 

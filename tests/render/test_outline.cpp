@@ -4,7 +4,7 @@
 
 #include "surfaces.h"
 
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <cmath>
 

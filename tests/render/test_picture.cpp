@@ -3,9 +3,8 @@
 #include "render/style.h"
 
 #include "surfaces.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 #include <numbers>
 #include <set>

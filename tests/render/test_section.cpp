@@ -3,8 +3,7 @@
 #include "render/surface.h"
 
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <cmath>
 #include <numbers>

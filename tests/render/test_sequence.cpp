@@ -5,9 +5,8 @@
 #include "render/surface.h"
 
 #include "surfaces.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-
-#include <catch2/catch.hpp>
 
 using sim::Vec3;
 using surfaces::turn;

@@ -1,7 +1,6 @@
 // Evenly spaced streamlines of flows whose lines are known.
 #include "render/streamlines.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <cmath>
 #include <numbers>

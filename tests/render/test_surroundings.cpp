@@ -2,8 +2,7 @@
 #include "render/draw.h"
 
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using render::Image;
 using sim::Vec3;

@@ -3,7 +3,7 @@
 
 #include "surfaces.h"
 
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <algorithm>
 

@@ -1,7 +1,6 @@
 #include "sim/placements.h"
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <omp.h>
 
@@ -69,6 +68,19 @@ TEST_CASE("the nearest point of an ellipsoid is found from outside and from insi
       CHECK(t.nearest.distance == Approx(std::abs(gap)).epsilon(1e-9));
       CHECK(t.nearest.inside == (gap < 0));
     }
+}
+
+TEST_CASE("the side of a membrane is known over its poles, where the coordinates end, from starts there and beside them") {
+  const Coefficients x = test::ellipsoid({1.5, 1, 0.7}, 4);
+  for (const Vec3& pole : {Vec3(0, 0, 1), Vec3(0, 0, -1)})
+    for (const Vec3& start : {pole, Vec3(pole + Vec3(0.07, -0.03, 0))})
+      for (const double gap : {0.3, 0.01, 1e-5, -1e-5, -0.01}) {
+        const Vec3 foot = sample_points(x, pole.transpose()).row(0).transpose();
+        const NearestPoint nearest = nearest_point(x, foot + gap * foot.normalized(), start);
+        INFO("gap " << gap << ", start " << start.transpose());
+        CHECK(nearest.distance == Approx(std::abs(gap)).epsilon(1e-6));  // 1e-6 beside the pole
+        CHECK(nearest.inside == (gap < 0));
+      }
 }
 
 TEST_CASE("the nearest point of a disc is the foot of the normal to rounding, from a start of a grid point's distance") {

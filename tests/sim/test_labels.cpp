@@ -1,8 +1,7 @@
 #include "sim/near.h"
 
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using namespace sim;
 using test::pi;

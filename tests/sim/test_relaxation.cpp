@@ -1,6 +1,5 @@
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using namespace sim;
 using test::pi;

@@ -1,8 +1,7 @@
 #include "sim/simulate.h"
 #include "../support/temporary_folder.h"
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 #include <omp.h>
 

@@ -1,7 +1,6 @@
 #include "sim/gmres.h"
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using namespace sim;
 using test::pi;

@@ -4,7 +4,7 @@
 #include "sim/simulate.h"
 #include "surfaces.h"
 
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using namespace sim;
 

@@ -1,12 +1,12 @@
 // The trajectory file: what goes in comes out, and nothing that was reported is ever lost.
 #include "sim/trajectory.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <random>
 

@@ -2,8 +2,7 @@
 #include "sim/velocity.h"
 
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using namespace sim;
 
