@@ -1,2 +1,2 @@
 #define CATCH_CONFIG_MAIN
-#include "tests/support/catch.h"
+#include <catch2/catch.hpp>
