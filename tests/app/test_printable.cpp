@@ -1,7 +1,6 @@
 // Texts from elsewhere do nothing to a terminal, a line or a report.
 #include "app/printable.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using app::printable;
 

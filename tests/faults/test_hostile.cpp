@@ -6,7 +6,7 @@
 
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 #include <fmt/format.h>
 #include <cmath>
 #include <csignal>

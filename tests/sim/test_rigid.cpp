@@ -3,8 +3,7 @@
 #include "sim/stepper.h"
 #include "sim/velocity.h"
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using namespace sim;
 

@@ -3,8 +3,7 @@
 #include "sim/flows.h"
 #include "sim/simulate.h"
 #include "surfaces.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using namespace sim;
 
