@@ -2,8 +2,8 @@
 #include "desk.h"
 #include "render/image.h"
 #include "sim/trajectory.h"
-
 #include "tests/support/catch.h"
+
 #include <csignal>
 
 #include <sys/stat.h>

@@ -4,8 +4,8 @@
 // TANKTREAD_KILLS sets how many kills there are in all; a few minutes' worth without it (docs/faults.md has the long form).
 #include "desk.h"
 #include "render/image.h"
-
 #include "tests/support/catch.h"
+
 #include <csignal>
 #include <cstdlib>
 #include <random>

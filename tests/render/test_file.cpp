@@ -4,7 +4,6 @@
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
-
 #include <set>
 #include <system_error>
 #include <unistd.h>

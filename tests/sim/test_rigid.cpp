@@ -3,7 +3,6 @@
 #include "sim/stepper.h"
 #include "sim/velocity.h"
 #include "surfaces.h"
-
 #include "tests/support/catch.h"
 
 using namespace sim;

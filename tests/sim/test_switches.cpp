@@ -3,7 +3,6 @@
 #include "sim/flows.h"
 #include "sim/simulate.h"
 #include "surfaces.h"
-
 #include "tests/support/catch.h"
 
 using namespace sim;
