@@ -114,9 +114,11 @@ void start_anew(const Setting& s, double time, VesicleDynamics& v) {
 double start_step(const Setting& s, const Dynamics& d) {
   const std::vector<AreaVolume> all = sizes(d);
   const double rate = straining_rate(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, positions(d), all);
+  constexpr double nearly_round = 0.02;
   double longest = longest_step(s.scene);
   for (const AreaVolume& size : all)
-    if (!is_sphere(size)) longest = std::min(longest, 0.25 * std::sqrt(1 - reduced_volume(size.area, size.volume)) / rate);
+    if (const double excess = 1 - reduced_volume(size.area, size.volume); excess < nearly_round && !is_sphere(size))
+      longest = std::min(longest, 0.25 * std::sqrt(excess) / rate);
   return longest;
 }
 

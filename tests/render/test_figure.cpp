@@ -140,8 +140,10 @@ TEST_CASE("chosen states are spread evenly or lie nearest to the wanted times") 
   CHECK(render::chosen_states(times, p) == std::vector<std::size_t>{0});
   p.panels = 40;
   CHECK(render::chosen_states(times, p).size() == 11);
-  p.times = {2.2, 99};
+  p.times = {2.2, 9.8};
   CHECK(render::chosen_states(times, p) == std::vector<std::size_t>{2, 10});
+  p.times = {2.2, 99};
+  CHECK_THROWS_WITH(render::chosen_states(times, p), Catch::Contains("there is no t = 99"));
   CHECK(render::chosen_states({}, p).empty());
 }
 
