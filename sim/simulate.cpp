@@ -142,7 +142,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
       for (const std::string& warning : header.warnings) observer.on_warning(warning);
     for (VesicleDynamics& v : d.vesicles) v.warned = v.tail > scene.numerics.tail_warning;
     const State first = evaluate(setting, d);
-    expect(d, first);
+    expect(setting, d, first);
     const TrajectoryLayout layout = layout_for(scene, d);
     mark_saved(d, first);
     file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d), observer.on_ready));

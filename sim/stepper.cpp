@@ -270,12 +270,16 @@ void begin_anew(const Setting& s, Dynamics& d) {
   d.history = false;
   d.dt_limit = std::min(d.dt_limit, start_step(s, d));
   for (VesicleDynamics& v : d.vesicles) start_anew(s, d.time, v);
-  expect(d, evaluate(s, d));
+  expect(s, d, evaluate(s, d));
 }
 
-void expect(Dynamics& d, const State& state) {
-  for (std::size_t k = 0; k < d.vesicles.size(); ++k)
-    d.vesicles[k].motion = {state.vesicles[k].velocity, state.vesicles[k].tension};
+void expect(const Setting& s, Dynamics& d, const State& state) {
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
+    VesicleDynamics& v = d.vesicles[k];
+    v.motion = {state.vesicles[k].velocity, state.vesicles[k].tension};
+    const Basis& basis = s.plans.basis(v.position.order, measure_order(v.position.order));
+    v.frame.motion = shape_motion(rigid_body(v.position), geometry(basis, v.position), basis.synthesize(v.motion.velocity).values);
+  }
 }
 
 void mark_saved(Dynamics& d, const State& state) {

@@ -26,8 +26,8 @@ void begin_anew(const Setting&, Dynamics&);
 
 /// Velocity and tension that solve (3a)-(3b) at the present positions, and all else that is saved.
 State evaluate(const Setting&, const Dynamics&);
-/// Takes velocity and tension of a state of the present for what the next step starts from and expects.
-void expect(Dynamics&, const State&);
+/// Takes velocity, tension and frames of a state of the present for what the next step starts from and expects.
+void expect(const Setting&, Dynamics&, const State&);
 /// To be called with a state that has been saved: it becomes the earlier end of the next interpolation.
 void mark_saved(Dynamics&, const State&);
 
