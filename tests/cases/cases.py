@@ -558,9 +558,13 @@ def two_writers(desk):
     (desk / "b.h5").symlink_to("a.h5")
     os.link(desk / "a.h5", desk / "c.h5")
     words = ("simulate", "s.toml", "--resume", "-q", "--set", "time.save_every=1")
+    before = (desk / "a.h5").stat().st_mtime_ns
     writer = desk.start(*words, "-o", "a.h5")
     try:
-        time.sleep(1)
+        for _ in range(600):
+            if (desk / "a.h5").stat().st_mtime_ns != before or writer.poll() is not None:
+                break
+            time.sleep(0.1)
         check(writer.poll() is None, "the writer ended early")
         for name in ("a.h5", "b.h5", "c.h5"):
             desk.refused(*words, "-o", name, says="another process is writing", patience=20)
