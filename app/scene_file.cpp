@@ -213,7 +213,7 @@ struct Reader {
       if (const auto kinds = owners(section.name, key.str()); !kinds.empty() && !contains(kinds, kind))
         fail_at(key.source(), fmt::format("'{}' is {}", key.str(), key_belongs_to(section.name, key.str(), kind)));
     visit(parameters, [&](const sim::Parameter& p, auto& value) {
-      if (contains(owners(section.name, p.name), kind) && missing(value))
+      if (!p.computed && contains(owners(section.name, p.name), kind) && missing(value))
         fail_at(source_of(table, selector->key), fmt::format("{} '{}' needs the key '{}', {}", selector->noun, kind,
                                                              p.name, p.meaning));
     });

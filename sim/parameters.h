@@ -32,6 +32,7 @@ struct Parameter {
   bool required = false;            ///< a table without this key is refused
   bool zero_is_auto = false;        ///< integers: 0, whatever the minimum, is written and read as "auto"
   std::string_view when_absent = {};  ///< optionals: what holds when the key is not given
+  bool computed = false;  ///< optionals that only some kinds have: what holds is computed, so these kinds do without the key
   std::string_view refused = {};      ///< not empty: the key is reserved; giving it is an error with this sentence
   bool is_path = false;               ///< a file name
 };
@@ -272,11 +273,11 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "volume_fraction", .unit = "", .meaning = "of the box or tube, which sets its size or length",
               .minimum = 0, .maximum = 0.74, .exclusive_minimum = true}, p.volume_fraction);
   v(Parameter{.name = "radius", .unit = "length", .meaning = "of the tube, whose axis is x", .minimum = 0,
-              .exclusive_minimum = true, .when_absent = "3 R0 of the vesicle"}, p.radius);
+              .exclusive_minimum = true, .when_absent = "3 R0 of the vesicle", .computed = true}, p.radius);
   v(Parameter{.name = "jitter", .unit = "", .meaning = "random shift of lattice centres, as a share of the lattice spacing",
               .minimum = 0, .maximum = 0.5}, p.jitter);
   v(Parameter{.name = "gap", .unit = "length", .meaning = "least distance between two membranes", .minimum = 0,
-              .when_absent = "0.05 R0 of the vesicle"}, p.gap);
+              .when_absent = "0.05 R0 of the vesicle", .computed = true}, p.gap);
   v(Parameter{.name = "orientation", .unit = "", .meaning = "axis of each copy", .choices = orientation_names},
     p.orientation);
   v(Parameter{.name = "seed", .unit = "", .meaning = "of the random numbers; the same seed gives the same places",

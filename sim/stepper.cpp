@@ -109,13 +109,13 @@ void start_anew(const Setting& s, double time, VesicleDynamics& v) {
   v.upsampling_due = time + upsampling_steps * s.scene.time.step;
 }
 
-/// Longest step from a start. A nearly round vesicle uses up its excess area in a time of sqrt(1 - nu) over the rate of
+/// Longest step from a start: four until flows are switched again. A nearly round vesicle uses up its excess area in a time of sqrt(1 - nu) over the rate of
 /// straining; a quarter of it suits all contrasts from 0.1 on.
 double start_step(const Setting& s, const Dynamics& d) {
   const std::vector<AreaVolume> all = sizes(d);
   const double rate = straining_rate(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, positions(d), all);
   constexpr double nearly_round = 0.02;
-  double longest = longest_step(s.scene);
+  double longest = std::min(longest_step(s.scene), (next_switch(s.scene.flows, d.time) - d.time) / 4);
   for (const AreaVolume& size : all)
     if (const double excess = 1 - reduced_volume(size.area, size.volume); excess < nearly_round && !is_sphere(size))
       longest = std::min(longest, 0.25 * std::sqrt(excess) / rate);
@@ -268,7 +268,8 @@ State evaluate(const Setting& s, const Dynamics& d) try {
 
 void begin_anew(const Setting& s, Dynamics& d) {
   d.history = false;
-  d.dt_limit = std::min(d.dt_limit, start_step(s, d));
+  d.dt_limit = start_step(s, d);
+  d.calm = 0;
   for (VesicleDynamics& v : d.vesicles) start_anew(s, d.time, v);
   expect(s, d, evaluate(s, d));
 }

@@ -120,6 +120,8 @@ TEST_CASE("unknown words are told with the nearest known one", "[scene]") {
 
 TEST_CASE("a key of another kind is refused, a missing one is asked for", "[scene]") {
   CHECK(error_of(replaced("rate = 1.0", "curvature = 1")) == "s.toml:5:1: 'curvature' is a key of flow 'poiseuille', not of 'shear'");
+  CHECK(error_of(good + "\n[[placement]]\nkind = \"box\"\ncount = 2\nvolume_fraction = 0.05\n") == "");  // its gap is computed
+  CHECK(error_of(good + "\n[[placement]]\nkind = \"tube\"\ncount = 2\nvolume_fraction = 0.05\n") == "");
   CHECK_THAT(error_of(replaced("reduced_volume = 0.85", "")), Contains("s.toml:12:9") && Contains("needs the key 'reduced_volume'"));
   CHECK_THAT(error_of(replaced("prolate", "ellipsoid")), Contains("s.toml:13:1") && Contains("'reduced_volume' is a key of shape"));
   CHECK_THAT(error_of(replaced("rate = 1.0", "frequency = 2.0")), Contains("s.toml:5:13") && Contains("time_factor 'oscillating'"));
