@@ -106,10 +106,15 @@ int figure(const Options& options) {
 
   // Curves of several trajectories share a figure; pictures of states get one each.
   std::vector<std::vector<FigureSource>> sets;
+  std::vector<sim::Scene> scenes;
+  std::vector<std::string> names;
+  for (const fs::path& path : options.inputs) names.push_back(path.string());
+  for (const Settings& one : settings) scenes.push_back(one.scene);
+  if (scenes.size() > 1) names = distinct_names(scenes, names);
   for (std::size_t k = 0; k < trajectories.size(); ++k) {
-    const std::string name = trajectories.size() > 1 ? printable(settings[k].scene.title) : std::string();
+    const std::string name = trajectories.size() > 1 ? printable(names[k]) : std::string();
     if (sets.empty() || !takes_several(options.word)) sets.emplace_back();
-    sets.back().push_back({trajectories[k], settings[k], name});
+    sets.back().push_back({trajectories[k], settings[k], name, options.inputs[k].string()});
   }
   ResultFiles files(options.inputs, options.force);
   std::vector<fs::path> stems;

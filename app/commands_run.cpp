@@ -114,7 +114,7 @@ int run(const Options& options) {
   const sim::FileWriter write = [&](const fs::path& path, std::string_view bytes) { files.write(path.filename().string(), bytes); };
   for (const render::FigureParameters& figure : settings.figures) {
     const fs::path stem = folder / (figure.out.empty() ? figure.kind : figure.out);
-    for (const fs::path& file : draw_figure({{reader, settings, {}}}, figure, stem, write, options)) say(options, file.string());
+    for (const fs::path& file : draw_figure({{reader, settings, {}, trajectory.string()}}, figure, stem, write, options)) say(options, file.string());
   }
   files.settle();
   return frames.movie_failed ? 1 : status;

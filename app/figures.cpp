@@ -1,6 +1,7 @@
 #include "figures.h"
 
 #include "captions.h"
+#include "message.h"
 #include "pictures.h"
 #include "quantities.h"
 #include "streamlines.h"
@@ -16,13 +17,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace app {
 
 namespace {
-
-/// An angle of a direction without sense, continued from the one before: no jump by 180 degrees.
-double unwrapped(double angle, double before) { return angle + 180 * std::round((before - angle) / 180); }
 
 /// Area radius of the first vesicle.
 double length_of(const sim::TrajectoryReader& trajectory) {
@@ -225,6 +224,24 @@ std::vector<render::Plot> spectra_plots(const render::FigureInput& input) {
   return {position, curvature};
 }
 
+/// Motion of each vesicle over the whole trajectory.
+std::vector<Motion> motions_of(const FigureSource& source) {
+  const double rate = time_unit(source.settings.scene).factor;
+  std::vector<double> times;
+  std::vector<std::vector<double>> angles(static_cast<std::size_t>(source.trajectory.layout().vesicles));
+  for (std::int64_t k = 0; k < source.trajectory.count(); ++k) {
+    const sim::State state = source.trajectory.state(k);
+    times.push_back(rate * state.time);
+    for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
+      const double angle = sim::inclination(render::volume_moments(state.vesicles[v].position).second) * 180 / std::numbers::pi;
+      angles[v].push_back(angles[v].empty() ? angle : unwrapped(angle, angles[v].back()));
+    }
+  }
+  std::vector<Motion> all;
+  for (const std::vector<double>& of_one : angles) all.push_back(motion_of(times, of_one));
+  return all;
+}
+
 std::vector<render::Plot> steady_plots(const std::vector<FigureSource>& sources) {
   sim::Plans plans;
   std::vector<SteadyPoint> points;
@@ -233,8 +250,17 @@ std::vector<render::Plot> steady_plots(const std::vector<FigureSource>& sources)
     if (time_unit(scene).symbol == "t")
       throw std::runtime_error("a figure of tank-treading needs steady shear flows");
     const sim::State last = source.trajectory.state(source.trajectory.count() - 1);
-    for (std::size_t v = 0; v < last.vesicles.size(); ++v)
+    const std::vector<Motion> motions = motions_of(source);
+    for (std::size_t v = 0; v < last.vesicles.size(); ++v) {
+      const std::string who = fmt::format("'{}', vesicle {}:", source.file, v);
+      if (motions[v] == Motion::tumbling || motions[v] == Motion::swinging)
+        throw std::runtime_error(fmt::format("{} it {}, and a figure of tank-treading shows steady angles only; 'figure inclination' "
+                                             "shows how it turns", who, text_of(motions[v])));
+      if (motions[v] == Motion::untold)
+        tell(fmt::format("{} too short a run to tell whether it tank-treads, swings or tumbles; marked as not settled", who));
       points.push_back(steady_point(plans, last.vesicles[v], scene.vesicles[v].viscosity_contrast, time_unit(scene).factor));
+      points.back().motion = motions[v];
+    }
   }
   return tank_treading_plots(points);
 }

@@ -17,6 +17,7 @@ struct FigureSource {
   const sim::TrajectoryReader& trajectory;
   const Settings& settings;
   std::string name;  ///< in the legend when there are several; else empty
+  std::string file = {};  ///< of the trajectory, for messages
 };
 
 /// Curves of several trajectories share a figure of this kind; pictures of states get one each.

@@ -182,6 +182,48 @@ std::string text_of(const std::vector<SceneDifference>& differences) {
   return text;
 }
 
+std::vector<std::string> distinct_names(const std::vector<sim::Scene>& scenes, const std::vector<std::string>& files) {
+  constexpr std::size_t most_keys = 3;
+  std::vector<std::string> names(scenes.size());
+  std::map<std::string, std::vector<std::size_t>> groups;
+  for (std::size_t k = 0; k < scenes.size(); ++k) groups[scenes[k].title].push_back(k);
+  for (const auto& [title, members] : groups) {
+    if (members.size() == 1) {
+      names[members[0]] = title;
+      continue;
+    }
+    std::vector<std::string> keys;                            // in the order of the scenes' tables
+    std::vector<std::map<std::string, std::string>> values;   // of a member, where they are not those of the first
+    std::map<std::string, std::string> firsts;
+    for (const std::size_t k : members) {
+      values.emplace_back();
+      for (const SceneDifference& d : physics_differences(scenes[members[0]], scenes[k])) {
+        if (firsts.try_emplace(d.key, d.first).second) keys.push_back(d.key);
+        values.back()[d.key] = d.second;
+      }
+    }
+    const auto last_word = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
+    const auto short_of = [&](const std::string& key) {
+      const auto same = [&](const std::string& other) { return last_word(other) == last_word(key); };
+      return std::count_if(keys.begin(), keys.end(), same) > 1 ? key : last_word(key);
+    };
+    std::map<std::string, int> times_used;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      std::string& name = names[members[m]];
+      for (std::size_t i = 0; i < keys.size() && keys.size() <= most_keys; ++i) {
+        const auto own = values[m].find(keys[i]);
+        name += fmt::format("{}{} = {}", i > 0 ? ", " : "", short_of(keys[i]), own == values[m].end() ? firsts[keys[i]] : own->second);
+      }
+      ++times_used[name];
+    }
+    for (const std::size_t k : members) {
+      if (times_used[names[k]] > 1) names[k] += (names[k].empty() ? "" : ", ") + files[k];
+      if (groups.size() > 1) names[k] = title + (title.empty() ? "" : ", ") + names[k];
+    }
+  }
+  return names;
+}
+
 std::string picture_hash(const Settings& settings) {
   Settings same = settings;
   same.scene.numerics.threads = 0;

@@ -23,6 +23,10 @@ std::vector<SceneDifference> physics_differences(const sim::Scene& first, const 
 bool continuable(const std::vector<SceneDifference>&);
 /// "time.step is 0.1 there and 0.2 here; ...", some of them.
 std::string text_of(const std::vector<SceneDifference>&);
+/// Names for a legend, one a scene: its title. Scenes of one title are told apart by the keys of their physics that differ,
+/// "viscosity_contrast = 3", and where that does not do, or takes more than three keys, by their files. A title that all share
+/// is left out.
+std::vector<std::string> distinct_names(const std::vector<sim::Scene>&, const std::vector<std::string>& files);
 
 /// A value in TOML, shortest digits that give the same number.
 std::string toml_value(bool), toml_value(int), toml_value(double), toml_value(const std::string&);

@@ -27,7 +27,57 @@ std::vector<double> contrasts_of(const std::vector<SteadyPoint>& points) {
   return all;
 }
 
+/// Values at the turning points of a curve, the first and last value left out; what is smaller than `least` is no swing.
+std::vector<double> turning_points(const std::vector<double>& values, double least) {
+  std::vector<double> turns;
+  double low = values.front(), high = values.front();  // since the last turn
+  int direction = 0;
+  for (const double x : values) {
+    if (direction >= 0 && x < high - least) {
+      if (direction > 0) turns.push_back(high);
+      direction = -1;
+      low = x;
+    } else if (direction <= 0 && x > low + least) {
+      if (direction < 0) turns.push_back(low);
+      direction = 1;
+      high = x;
+    }
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  return turns;
+}
+
 }  // namespace
+
+double unwrapped(double angle, double before) { return angle + 180 * std::round((before - angle) / 180); }
+
+std::string_view text_of(Motion motion) {
+  switch (motion) {
+    case Motion::tank_treading: return "tank-treads";
+    case Motion::swinging: return "swings";
+    case Motion::tumbling: return "tumbles";
+    case Motion::untold: break;
+  }
+  return "has not settled";
+}
+
+Motion motion_of(const std::vector<double>& times, const std::vector<double>& degrees) {
+  constexpr double still = 1, least_strain = 2, lasting = 0.9;  // degrees; strain; of a swing to the one before
+  if (times.empty() || times.size() != degrees.size()) return Motion::untold;
+  const auto [low, high] = std::minmax_element(degrees.begin(), degrees.end());
+  if (*high - *low >= 180) return Motion::tumbling;
+  const double window = (times.back() - times.front()) / 3;
+  if (!(window >= least_strain)) return Motion::untold;
+  const auto first = std::lower_bound(times.begin(), times.end(), times.back() - window) - times.begin();
+  const auto [least, most] = std::minmax_element(degrees.begin() + first, degrees.end());
+  if (times.size() - static_cast<std::size_t>(first) > 2 && *most - *least <= still) return Motion::tank_treading;
+  const std::vector<double> turns = turning_points(degrees, still);
+  if (turns.size() < 3) return Motion::untold;
+  const double last = std::abs(turns[turns.size() - 1] - turns[turns.size() - 2]);
+  const double before = std::abs(turns[turns.size() - 2] - turns[turns.size() - 3]);
+  return last >= lasting * before ? Motion::swinging : Motion::untold;
+}
 
 const std::vector<LiteraturePoint>& literature_angles() {
   static const std::vector<LiteraturePoint> points{
@@ -104,6 +154,7 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
         source = l.source;
         render::Curve fresh;
         fresh.colour = colour;
+        fresh.csv_name = fmt::format("{}, λ = {}", source, contrast);
         fresh.line = false;
         fresh.marker = source.starts_with("Kraus") ? render::Marker::diamond : render::Marker::square;
         const bool known = std::any_of(plot.curves.begin(), plot.curves.end(), [&](const auto& c) { return c.name == source; });
@@ -127,6 +178,7 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
     }
     theory_angle.colour = theory_frequency.colour = k;
     theory_angle.dashed = theory_frequency.dashed = true;
+    theory_angle.csv_name = theory_frequency.csv_name = fmt::format("Keller, Skalak 1982, λ = {}", contrasts[k]);
     if (k == 0) theory_angle.name = "Keller, Skalak 1982";
     angle.curves.push_back(theory_angle);
     frequency.curves.push_back(theory_frequency);
@@ -136,10 +188,25 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
     ours_angle.colour = k;
     ours_angle.marker = render::Marker::ring;
     std::vector<SteadyPoint> own;
-    for (const SteadyPoint& p : points)
-      if (p.viscosity_contrast == contrasts[k]) own.push_back(p);
+    render::Curve untold_angle;
+    untold_angle.colour = k;
+    untold_angle.line = false;
+    untold_angle.marker = render::Marker::triangle;
+    render::Curve untold_frequency = untold_angle;
+    for (const SteadyPoint& p : points) {
+      if (p.viscosity_contrast != contrasts[k]) continue;
+      if (p.motion == Motion::tank_treading) {
+        own.push_back(p);
+        continue;
+      }
+      untold_angle.x.push_back(p.reduced_volume);
+      untold_angle.y.push_back(p.angle);
+      untold_frequency.x.push_back(p.reduced_volume);
+      untold_frequency.y.push_back(p.frequency);
+    }
     std::sort(own.begin(), own.end(), [](const SteadyPoint& a, const SteadyPoint& b) { return a.reduced_volume < b.reduced_volume; });
     ours_angle.line = own.size() > 2;
+    ours_angle.csv_name = fmt::format("Tanktread, λ = {}", contrasts[k]);
     render::Curve ours_frequency = ours_angle;
     ours_frequency.name = fmt::format("λ = {}", contrasts[k]);
     if (k == 0) {  // a line of the legend alone
@@ -157,6 +224,13 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
     }
     angle.curves.push_back(ours_angle);
     frequency.curves.push_back(ours_frequency);
+    if (!untold_angle.x.empty()) {
+      untold_angle.csv_name = untold_frequency.csv_name = fmt::format("Tanktread, not settled, λ = {}", contrasts[k]);
+      const bool named = std::any_of(angle.curves.begin(), angle.curves.end(), [](const auto& c) { return c.name == "not settled"; });
+      if (!named) untold_angle.name = "not settled";
+      angle.curves.push_back(untold_angle);
+      frequency.curves.push_back(untold_frequency);
+    }
     literature(literature_angles(), contrasts[k], k, angle, true);
     literature(literature_frequencies(), contrasts[k], k, frequency, false);
   }

@@ -4,12 +4,29 @@
 #include "render/figure.h"
 #include "sim/plans.h"
 
+#include <string_view>
+#include <vector>
+
 namespace app {
+
+/// What the long axis does in a steady shear flow.
+enum class Motion { untold, tank_treading, swinging, tumbling };
+/// Told from times, in units of one over the rate, and inclinations in degrees, continued over the jumps by 180 degrees:
+///   tumbling       it turned by half a turn or more; between two angles at rest there is less
+///   tank_treading  over the last third, which spans a strain of 2 at least, it stays within one degree
+///   swinging       its last two swings are larger than a degree, and the last no smaller than 9/10 of the one before
+/// Anything else is untold: the run is too short, or still settling.
+Motion motion_of(const std::vector<double>& times, const std::vector<double>& degrees);
+/// "tumbles", for a sentence.
+std::string_view text_of(Motion);
+/// An angle in degrees of a direction without sense, continued from the one before: no jump by 180 degrees.
+double unwrapped(double angle, double before);
 
 struct SteadyPoint {
   double reduced_volume = 0, viscosity_contrast = 1;
   double angle = 0;      ///< inclination / pi
   double frequency = 0;  ///< of the membrane round the section through the centroid, 2 pi / period / rate
+  Motion motion = Motion::tank_treading;
 };
 /// Of a vesicle that tank-treads in a shear flow of that rate, from one state: the period is the integral of the arc length
 /// over the speed along the section y = y of the centroid.
@@ -19,7 +36,7 @@ SteadyPoint steady_point(sim::Plans&, const sim::VesicleState&, double viscosity
 /// where it tumbles.
 SteadyPoint keller_skalak(double reduced_volume, double viscosity_contrast);
 
-/// Two panels: angle and frequency.
+/// Two panels: angle and frequency. Points whose motion is untold are marked by triangles and joined to no curve.
 std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>&);
 
 struct LiteraturePoint {

@@ -34,6 +34,7 @@ struct Curve {
   std::optional<double> instant; ///< 0..1: a colour between early and late instead
   std::optional<Marker> marker;
   bool line = true, dashed = false;
+  std::string csv_name = {};     ///< in the CSV; empty: the name, or the curve's number
 };
 struct Plot {
   Axis x, y;  ///< on a logarithmic axis the curves hold the values themselves

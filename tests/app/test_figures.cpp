@@ -96,3 +96,29 @@ TEST_CASE("a figure that cannot be says why in one sentence", "[figure]") {
   CHECK_THAT(complaint("streamlines", {"--set", "figure.plane_point=[0,9,0]"}), Contains("cuts no vesicle"));
   CHECK_THAT(complaint("overlay", {"--set", "figure.plane_normal=[0,0,0]"}), Contains("plane_normal"));
 }
+
+TEST_CASE("a figure of tank-treading refuses a vesicle that tumbles and says what a short run leaves open", "[figure]") {
+  const Bench rests;
+  const support::Outcome shown = rests.figure("tank-treading", {});
+  CHECK(shown.status == 0);
+  CHECK_THAT(shown.err, Contains("too short a run to tell"));
+  const std::string csv = support::read_file(rests.folder / "tank-treading.csv");
+  CHECK_THAT(csv, Contains("\"Keller, Skalak 1982, λ = 1\"") && Contains("\"Kraus et al. 1996, λ = 1\"") &&
+                      Contains("\"Tanktread, not settled, λ = 1\""));
+  const Bench turns({"vesicle.viscosity_contrast=20", "time.end=16", "time.step=0.1", "time.save_every=0.5"});
+  const support::Outcome refused = turns.figure("tank-treading", {});
+  CHECK(refused.status == 1);
+  CHECK_THAT(refused.err, Contains("t.h5', vesicle 0: it tumbles"));
+  CHECK_FALSE(fs::exists(turns.folder / "tank-treading.csv"));
+}
+
+TEST_CASE("curves of scenes of one title are told apart by what differs between them", "[figure]") {
+  const Bench first({"vesicle.viscosity_contrast=3"}), second({"vesicle.viscosity_contrast=5"});
+  for (const char* kind : {"time-series", "phase"}) {
+    REQUIRE(first.figure(kind, {second.trajectory}).status == 0);
+    const std::string csv = support::read_file(first.folder / (std::string(kind) + ".csv"));
+    CHECK_THAT(csv, Contains("viscosity_contrast = 3.0") && Contains("viscosity_contrast = 5.0"));
+  }
+  REQUIRE(first.figure("phase", {first.trajectory}).status == 0);  // nothing differs
+  CHECK_THAT(support::read_file(first.folder / "phase.csv"), Contains("t.h5"));
+}

@@ -59,3 +59,54 @@ TEST_CASE("the figure of tank-treading shows every published point of the contra
     if (curve.marker && curve.marker != render::Marker::ring) published += curve.x.size();
   CHECK(published == 5);  // three of Kraus et al., two of Zhao and Shaqfeh at 2.7
 }
+
+namespace {
+
+/// Of a function of time, at n + 1 instants up to an end.
+template <class Angle>
+app::Motion motion_under(double end, int n, Angle angle) {
+  std::vector<double> times, degrees;
+  for (int k = 0; k <= n; ++k) {
+    times.push_back(end * k / n);
+    degrees.push_back(degrees.empty() ? angle(times.back()) : app::unwrapped(angle(times.back()), degrees.back()));
+  }
+  return app::motion_of(times, degrees);
+}
+
+}  // namespace
+
+TEST_CASE("the motion of a vesicle is told from its inclination, where the run is long enough") {
+  using app::Motion;
+  CHECK(motion_under(20, 40, [](double) { return 24.0; }) == Motion::tank_treading);
+  CHECK(motion_under(20, 40, [](double t) { return 24 - 60 * std::exp(-t); }) == Motion::tank_treading);  // 0.08 degrees are left
+  CHECK(motion_under(60, 300, [](double t) { return 5 + 20 * std::sin(t); }) == Motion::swinging);
+  CHECK(motion_under(40, 200, [](double t) { return -std::fmod(10 * t, 180.0); }) == Motion::tumbling);  // with jumps
+  // Jeffery's ellipsoid of ratio 4: tan θ = r tan(-t r / (r² + 1)), a turn of 180 degrees in π (r + 1/r) = 13.4.
+  const auto jeffery = [](double t) { return std::atan(4 * std::tan(-t * 4 / 17)) * 180 / pi; };
+  CHECK(motion_under(14, 100, jeffery) == Motion::tumbling);
+  CHECK(motion_under(12, 100, jeffery) == Motion::untold);  // not yet half round
+  // Too short, still settling, spiralling in, one swing, nothing at all.
+  CHECK(motion_under(0.3, 3, [](double) { return 24.0; }) == Motion::untold);
+  CHECK(motion_under(20, 40, [](double t) { return 24 - 60 * std::exp(-0.1 * t); }) == Motion::untold);
+  CHECK(motion_under(20, 200, [](double t) { return 24 + 60 * std::exp(-0.1 * t) * std::sin(t); }) == Motion::untold);
+  CHECK(motion_under(7, 70, [](double t) { return 5 + 20 * std::sin(t); }) == Motion::untold);
+  CHECK(app::motion_of({}, {}) == Motion::untold);
+  CHECK(app::motion_of({0}, {24}) == Motion::untold);
+}
+
+TEST_CASE("in the figure of tank-treading what has not settled is marked, joined to no curve, and named") {
+  const auto plots = app::tank_treading_plots({{0.85, 1, 0.134, 0.36}, {0.9, 1, 0.16, 0.4, app::Motion::untold},
+                                               {0.93, 1, 0.17, 0.42}, {0.95, 1, 0.18, 0.44}});
+  for (const render::Plot& plot : plots) {
+    std::size_t marked = 0;
+    for (const render::Curve& curve : plot.curves) {
+      if (!curve.x.empty()) CHECK_FALSE(curve.csv_name.empty());
+      if (curve.csv_name == "Tanktread, λ = 1") CHECK(curve.x == std::vector<double>{0.85, 0.93, 0.95});
+      if (curve.marker != render::Marker::triangle) continue;
+      ++marked;
+      CHECK(curve.x == std::vector<double>{0.9});
+      CHECK_FALSE(curve.line);
+    }
+    CHECK(marked == 1);
+  }
+}
