@@ -5,7 +5,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <istream>
 #include <string>
+#include <string_view>
 
 namespace sim {
 
@@ -21,6 +23,14 @@ inline std::ifstream open_input(const std::filesystem::path& path, std::string& 
   std::ifstream in(path, std::ios::binary);
   if (!in) why = std::strerror(errno);
   return in;
+}
+
+/// Some editors begin a text in UTF-8 with a byte order mark; it is no part of the text.
+inline void skip_byte_order_mark(std::istream& in) {
+  char start[3]{};
+  if (in.read(start, 3) && std::string_view(start, 3) == "\xef\xbb\xbf") return;
+  in.clear();
+  in.seekg(0);
 }
 
 }  // namespace sim

@@ -152,6 +152,7 @@ std::vector<VesicleParameters> from_file(const PlacementParameters& p, const Ves
   std::string why;
   std::ifstream in = open_input(p.file, why);
   if (!in) throw std::invalid_argument(fmt::format("cannot read the table of centres '{}': {}", p.file, why));
+  skip_byte_order_mark(in);
   std::vector<VesicleParameters> all;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {

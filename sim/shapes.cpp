@@ -116,6 +116,7 @@ Coefficients from_file(const VesicleParameters& v) {
   std::string why;
   std::ifstream in = open_input(v.file, why);
   if (!in) throw std::invalid_argument(fmt::format("cannot read shape file '{}': {}", v.file, why));
+  skip_byte_order_mark(in);
   std::string line, kind;
   int number = 0, grid_order = 0;
   std::vector<std::array<double, 5>> rows;

@@ -1,6 +1,7 @@
 #include "stepper.h"
 
 #include "dealias.h"
+#include "digits.h"
 #include "norms.h"
 #include "parallel.h"
 #include "shapes.h"
@@ -293,10 +294,11 @@ void mark_saved(Dynamics& d, const State& state) {
 
 std::string resolution_warning(const Setting& s, const Dynamics& d, std::size_t k) {
   const VesicleDynamics& v = d.vesicles[k];
+  const auto [tail, bound] = told_apart(100 * v.tail, 100 * s.scene.numerics.tail_warning);
   return fmt::format(
-      "vesicle {}: order {} does not resolve the shape well ({:.0f} % of the mean curvature's spectrum lies in its last "
-      "quarter; bound {:.0f} %); try order {}",
-      k, v.position.order, 100 * v.tail, 100 * s.scene.numerics.tail_warning, v.position.order * 3 / 2);
+      "vesicle {}: order {} does not resolve the shape well ({} % of the mean curvature's spectrum lies in its last "
+      "quarter; bound {} %); try order {}",
+      k, v.position.order, tail, bound, v.position.order * 3 / 2);
 }
 
 namespace {
