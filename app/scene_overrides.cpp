@@ -10,11 +10,32 @@ namespace app {
 
 namespace {
 
+/// ".5", "-.5" and "5." as TOML writes them, outside of quotes.
+std::string with_all_digits(std::string_view value) {
+  const auto digit = [&](std::size_t at) { return at < value.size() && value[at] >= '0' && value[at] <= '9'; };
+  std::string text;
+  char quote = 0;
+  for (std::size_t at = 0; at < value.size(); ++at) {
+    const char c = value[at];
+    if (quote ? c == quote : c == '"' || c == '\'') quote = quote ? '\0' : c;
+    const bool before = at > 0 && digit(at - 1), after = digit(at + 1);
+    if (!quote && c == '.' && after && !before) text += '0';
+    text += c;
+    if (!quote && c == '.' && before && !after) text += '0';
+  }
+  return text;
+}
+
 /// The value, with the override as its source, so that a later complaint names it.
 toml::table parse_value(const std::string& value, const std::string& source) {
   try {
     return parse_toml("value = " + value, source);
   } catch (const toml::parse_error& error) {
+    if (const std::string digits = with_all_digits(value); digits != value) try {
+        return parse_toml("value = " + digits, source);
+      } catch (const toml::parse_error&) {
+        // It is no number for other reasons.
+      }
     if (value.find_first_of("\"'[]{}\n#=") != std::string::npos)
       throw std::runtime_error(fmt::format("{}: {}", source, error.description()));
     return toml::parse("value = \"" + value + "\"", source);

@@ -207,12 +207,13 @@ std::vector<std::string> distinct_names(const std::vector<sim::Scene>& scenes, c
       const auto same = [&](const std::string& other) { return last_word(other) == last_word(key); };
       return std::count_if(keys.begin(), keys.end(), same) > 1 ? key : last_word(key);
     };
+    const auto as_read = [](const std::string& value) { return value.ends_with(".0") ? value.substr(0, value.size() - 2) : value; };
     std::map<std::string, int> times_used;
     for (std::size_t m = 0; m < members.size(); ++m) {
       std::string& name = names[members[m]];
       for (std::size_t i = 0; i < keys.size() && keys.size() <= most_keys; ++i) {
         const auto own = values[m].find(keys[i]);
-        name += fmt::format("{}{} = {}", i > 0 ? ", " : "", short_of(keys[i]), own == values[m].end() ? firsts[keys[i]] : own->second);
+        name += fmt::format("{}{} = {}", i > 0 ? ", " : "", short_of(keys[i]), as_read(own == values[m].end() ? firsts[keys[i]] : own->second));
       }
       ++times_used[name];
     }

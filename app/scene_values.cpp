@@ -114,8 +114,12 @@ void read_value(const sim::Parameter& p, const toml::node& node, int& value) {
     value = 0;
     return;
   }
-  if (!node.is_integer()) wrong_type(p, node, p.zero_is_auto ? "\"auto\" or a whole number" : "a whole number");
-  const std::int64_t number = node.as_integer()->get();
+  constexpr double largest = 9007199254740992;  // 2^53: whole numbers of type double have all their digits up to there
+  std::int64_t number = 0;
+  if (node.is_integer()) number = node.as_integer()->get();
+  else if (const double x = node.is_floating_point() ? node.as_floating_point()->get() : 0.5; std::floor(x) == x && std::abs(x) < largest)
+    number = static_cast<std::int64_t>(x);  // 8.0
+  else wrong_type(p, node, p.zero_is_auto ? "\"auto\" or a whole number" : "a whole number");
   if (!(p.zero_is_auto && number == 0)) check_range(p, node, static_cast<double>(number));
   if (number != static_cast<int>(number)) fail_at(node.source(), fmt::format("'{}' is too large: {}", p.name, number));
   value = static_cast<int>(number);
