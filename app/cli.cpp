@@ -85,14 +85,37 @@ void parse_figure_size(Options& options, const std::string& text) {
 }
 
 constexpr OptionRow option_rows[] = {
-    {"output", [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "where the results go"); }},
-    {"jobs",
+    {"to-folder",
+     [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "the folder of the results (default: out/ and the scene's name)"); }},
+    {"to-trajectory",
+     [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "the trajectory (default: the scene's name, with .h5)"); }},
+    {"to-pictures",
      [](CLI::App& app, Options& o) {
-       app.add_option("-j,--jobs", o.jobs, "threads, or processes that draw the frames of render (default: as the scene says)")->check(CLI::Range(1, 1024));
+       app.add_option("-o,--output", o.output, "the folder of frames and movie, or the PNG file of --time (default: beside the trajectory)");
+     }},
+    {"to-figure",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output, "the files, without .png, .svg, .pdf, .csv (default: NAME beside the trajectory)");
+     }},
+    {"to-report",
+     [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "the folder of the results (default: reproduce)"); }},
+    {"threads",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-j,--jobs", o.jobs, "threads (default: numerics.threads of the scene)")->check(CLI::Range(1, 1024));
+     }},
+    {"processes",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-j,--jobs", o.jobs, "processes that draw the frames (default: 1); with --time, threads")->check(CLI::Range(1, 1024));
      }},
     {"set",
      [](CLI::App& app, Options& o) {
        app.add_option("--set", o.set, "change a key of the scene: --set time.end=5 (any number of times)")
+           ->allow_extra_args(false)
+           ->type_name("KEY=VALUE");
+     }},
+    {"set-pictures",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--set", o.set, "change a key of view, key_frame, movie or figure: --set view.style=outline (any number of times)")
            ->allow_extra_args(false)
            ->type_name("KEY=VALUE");
      }},
@@ -104,8 +127,10 @@ constexpr OptionRow option_rows[] = {
     {"dry-run",
      [](CLI::App& app, Options& o) { app.add_flag("--dry-run", o.dry_run, "print the resolved scene, do nothing"); }},
     {"quiet", [](CLI::App& app, Options& o) { app.add_flag("-q,--quiet", o.quiet, "say nothing but errors"); }},
-    {"resume", [](CLI::App& app, Options& o) { app.add_flag("--resume", o.resume, "continue a trajectory"); }},
-    {"force", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace earlier results; a single file also when it is somebody else's"); }},
+    {"resume", [](CLI::App& app, Options& o) { app.add_flag("--resume", o.resume, "continue the trajectory that is there, also to a later time.end"); }},
+    {"force-folder", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "give up results of another scene that this program left in the folder"); }},
+    {"force-file", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace a file that is there, also somebody else's"); }},
+    {"force-trajectory", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace a trajectory that is there"); }},
     {"gl",
      [](CLI::App& app, Options& o) {
        app.add_option("--gl", o.gl, "OpenGL by auto, osmesa, egl, egl:N or software")->capture_default_str();
@@ -142,6 +167,8 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) {
        app.add_option("--time", o.time, "one still of this time instead of a movie; -o names the PNG file");
      }},
+    {"state-time",
+     [](CLI::App& app, Options& o) { app.add_option("--time", o.time, "only the saved state nearest to this time"); }},
     {"figure-size",
      [](CLI::App& app, Options& o) {
        app.add_option_function<std::string>("--size", [&o](const std::string& text) { parse_figure_size(o, text); },

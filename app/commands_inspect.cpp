@@ -2,6 +2,7 @@
 #include "catalogues.h"
 #include "commands.h"
 #include "csv.h"
+#include "frames.h"
 #include "interrupt.h"
 #include "message.h"
 #include "mesh_export.h"
@@ -16,6 +17,9 @@
 #include "sim/input_file.h"
 
 #include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
 
 namespace app {
 
@@ -37,20 +41,35 @@ int info(const Options& options) {
   return 0;
 }
 
+namespace {
+
+/// Numbers of the states to write, the second not among them: all, or the one nearest to a time.
+std::pair<std::int64_t, std::int64_t> chosen_states(const sim::TrajectoryReader& trajectory, std::optional<double> time) {
+  if (!time) return {0, trajectory.count()};
+  require_time(*time, trajectory.count() > 0 ? trajectory.time(trajectory.count() - 1) : std::nan(""));
+  std::int64_t nearest = 0;
+  for (std::int64_t k = 1; k < trajectory.count(); ++k)
+    if (std::abs(trajectory.time(k) - *time) < std::abs(trajectory.time(nearest) - *time)) nearest = k;
+  return {nearest, nearest + 1};
+}
+
+}  // namespace
+
 int export_states(const Options& options) {
   if (options.csv.empty() && options.vtk.empty() && options.ply.empty())
     throw std::runtime_error("say what to write: --csv FILE, --vtk DIR or --ply DIR");
   const sim::TrajectoryReader trajectory(options.inputs.front());
+  const auto [first, end] = chosen_states(trajectory, options.time);
   ResultFiles files(options.inputs, options.force);
   // Before the first of them is written.
   if (!options.csv.empty()) files.require(options.csv);
   if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_series);
-  for (std::int64_t k = 0; k < trajectory.count(); ++k) {
+  for (std::int64_t k = first; k < end; ++k) {
     if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_name(k));
     for (int v = 0; !options.ply.empty() && v < trajectory.layout().vesicles; ++v)
       files.require_inside(options.ply / ply_name(static_cast<std::size_t>(v), k));
   }
-  if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory));
+  if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory, first, end));
   struct Kind {
     const std::filesystem::path& folder;
     std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
@@ -58,14 +77,14 @@ int export_states(const Options& options) {
   for (const auto& [folder, write] : {Kind{options.vtk, export_vtk}, Kind{options.ply, export_ply}}) {
     if (folder.empty()) continue;
     Progress progress("exporting", options.quiet);
-    const std::int64_t states = write(trajectory, {folder, options.latitudes}, files.writer_inside(), [&](std::int64_t k, std::int64_t count) {
+    const std::int64_t states = write(trajectory, {folder, first, end, options.latitudes}, files.writer_inside(), [&](std::int64_t k, std::int64_t count) {
       progress.show(static_cast<double>(k) / static_cast<double>(count), fmt::format("state {} of {}", k + 1, count));
       return !interrupted();
     });
     progress.clear();
-    if (states < trajectory.count()) {
+    if (states < end - first) {
       files.settle();
-      tell(fmt::format("interrupted; {} of {} states are in '{}'", states, trajectory.count(), folder.string()));
+      tell(fmt::format("interrupted; {} of {} states are in '{}'", states, end - first, folder.string()));
       return interrupted_status;
     }
     if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", printable(folder.string()), states);

@@ -15,6 +15,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace app {
 
 namespace fs = std::filesystem;
@@ -56,6 +58,16 @@ int render(const Options& options) {
     if (!options.quiet) fmt::print("{}\n", printable(still.string()));
     return 0;
   }
+  // One that this command asks for; a run that ended before its own poster can still be drawn.
+  if (const auto poster = settings.front().movie.poster; poster && poster != scene_in(trajectories.front(), path).movie.poster) {
+    double end = 0;
+    for (const sim::TrajectoryReader& trajectory : trajectories) end = std::max(end, trajectory.time(trajectory.count() - 1));
+    try {
+      require_time(*poster, end);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("movie.poster: {}", error.what()));
+    }
+  }
   const fs::path folder = options.output.empty() ? here : options.output;
   const auto stopped = [&] {
     const bool told_by_parent = options.shards > 1 && options.quiet;
@@ -84,6 +96,7 @@ int render(const Options& options) {
     for (const fs::path& file : {report.movie, report.poster})
       if (!file.empty()) fmt::print("{}\n", printable(file.string()));
   }
+  if (!report.poster_remark.empty()) tell(report.poster_remark);
   if (!report.remark.empty()) tell(report.remark);
   return report.movie_failed ? 1 : 0;
 }

@@ -109,6 +109,7 @@ int run(const Options& options) {
   say(options, fmt::format("{}: {} frames drawn, {} kept", (folder / "frames").string(), frames.drawn, frames.kept));
   if (!frames.movie.empty()) say(options, frames.movie.string());
   if (!frames.poster.empty()) say(options, frames.poster.string());
+  if (!frames.poster_remark.empty()) tell(frames.poster_remark);
   if (!frames.remark.empty())
     tell(fmt::format("{}; the frames are in '{}'", frames.remark, (folder / "frames").string()));
   const sim::FileWriter write = [&](const fs::path& path, std::string_view bytes) { files.write(path.filename().string(), bytes); };

@@ -14,16 +14,17 @@ std::vector<CsvColumn> csv_columns() {
   return columns;
 }
 
-std::string csv_text(const sim::TrajectoryReader& trajectory) {
+std::string csv_text(const sim::TrajectoryReader& trajectory, std::int64_t first, std::int64_t end) {
   std::string text;
   for (const CsvColumn& column : csv_columns()) text += (text.empty() ? "" : ",") + column.name;
   text += '\n';
   sim::Plans plans;
   std::vector<sim::VesicleMeasures> initial;
-  for (std::int64_t k = 0; k < trajectory.count(); ++k) {
+  if (first < end)
+    for (const sim::VesicleState& v : trajectory.state(0).vesicles) initial.push_back(sim::measure(plans, v, 1, 1));
+  for (std::int64_t k = first; k < end; ++k) {
     const sim::State state = trajectory.state(k);
     for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
-      if (k == 0) initial.push_back(sim::measure(plans, state.vesicles[v], 1, 1));
       const sim::VesicleMeasures m = sim::measure(plans, state.vesicles[v], initial[v].area, initial[v].volume);
       text += fmt::format("{},{},{}", state.step, state.time, v);
       visit(m, [&](const char*, const char*, double value) { text += fmt::format(",{}", value); });

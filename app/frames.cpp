@@ -7,6 +7,8 @@
 #include "progress.h"
 #include "version.h"
 
+#include "sim/digits.h"
+
 #include <fmt/format.h>
 
 #include <stdlib.h>
@@ -141,6 +143,12 @@ struct Film {
 
 }  // namespace
 
+void require_time(double time, double end) {
+  if (time >= 0 && time <= end * (1 + 1e-9)) return;
+  const auto [last, wanted] = sim::told_apart(end, time, 6);
+  throw std::invalid_argument(fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {}", last, wanted));
+}
+
 FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
   const Settings& settings = sources.front().settings;
   const MovieFormat& format = find_movie_format(settings.movie.format);
@@ -166,7 +174,14 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles&
   if (all_kept && is_current_movie(files, name, production, times.size(), settings.movie)) report.movie = movie;
   const bool encode = options.shards == 1 && report.movie.empty();
   const auto finish_poster = [&] {
-    if (options.shards == 1 && settings.movie.poster) report.poster = write_poster(files, times, *settings.movie.poster);
+    if (options.shards > 1 || !settings.movie.poster) return;
+    if (const double end = end_of(longest(sources)); *settings.movie.poster <= end * (1 + 1e-9)) {
+      report.poster = write_poster(files, times, *settings.movie.poster);
+    } else {  // the simulation ended before it
+      files.remove(poster_name);
+      const auto [wanted, last] = sim::told_apart(*settings.movie.poster, end);
+      report.poster_remark = fmt::format("there is no poster: it is to show t = {}, and the trajectory ends at t = {}", wanted, last);
+    }
   };
   if (all_kept && !encode) {
     if (options.shards == 1) files.remove_frames(static_cast<std::int64_t>(times.size()));
@@ -239,8 +254,7 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles&
 void render_still(const std::vector<PictureSource>& sources, double time, const fs::path& path, ResultFiles& files,
                   const Options& options) {
   const double end = end_of(longest(sources));
-  if (!(time >= 0 && time <= end * (1 + 1e-9)))
-    throw std::invalid_argument(fmt::format("the trajectory goes from t = 0 to t = {:.6g}; there is no t = {:.6g}", end, time));
+  require_time(time, end);
   const Production production = prepare_pictures(sources, time);
   if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
   Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, production.height);

@@ -13,12 +13,16 @@ std::int64_t frame_count(double end, double time_per_frame);
 /// Instants of the frames: those of the saved states, or every movie.time_per_frame.
 std::vector<double> frame_times(const sim::TrajectoryReader&, const render::MovieParameters&);
 
+/// Throws std::invalid_argument, a sentence, for a time that a trajectory from 0 to `end` does not reach, or that is no number.
+void require_time(double time, double end);
+
 struct FrameReport {
   std::int64_t drawn = 0;  ///< now
   std::int64_t kept = 0;   ///< complete from an earlier run of the same scene, view and program
   bool interrupted = false;
   std::filesystem::path movie;     ///< empty: there is none
   std::filesystem::path poster;    ///< likewise
+  std::string poster_remark;       ///< why there is no poster, though one was asked for
   std::string remark;              ///< why there is no movie
   bool movie_failed = false;       ///< ... though there is an ffmpeg; the frames are complete all the same
 };

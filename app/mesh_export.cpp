@@ -166,8 +166,8 @@ std::int64_t export_vtk(const sim::TrajectoryReader& trajectory, const MeshExpor
   make_folder(how.folder);
   Sampler sampler(how.latitudes);
   std::string series;
-  std::int64_t k = 0;
-  for (; k < trajectory.count() && progress(k, trajectory.count()); ++k) {
+  std::int64_t k = how.first;
+  for (; k < how.end && progress(k - how.first, how.end - how.first); ++k) {
     const sim::State state = trajectory.state(k);
     const std::string name = vtk_name(k);
     write(how.folder / name, vtk_text(state, sampler));
@@ -176,20 +176,20 @@ std::int64_t export_vtk(const sim::TrajectoryReader& trajectory, const MeshExpor
   write(how.folder / vtk_series,
                    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n" +
                        series + "</Collection>\n</VTKFile>\n");
-  return k;
+  return k - how.first;
 }
 
 std::int64_t export_ply(const sim::TrajectoryReader& trajectory, const MeshExport& how, const sim::FileWriter& write,
                         const ExportProgress& progress) {
   make_folder(how.folder);
   Sampler sampler(how.latitudes);
-  std::int64_t k = 0;
-  for (; k < trajectory.count() && progress(k, trajectory.count()); ++k) {
+  std::int64_t k = how.first;
+  for (; k < how.end && progress(k - how.first, how.end - how.first); ++k) {
     const sim::State state = trajectory.state(k);
     for (std::size_t v = 0; v < state.vesicles.size(); ++v)
       write(how.folder / ply_name(v, k), ply_text(state.vesicles[v], v, state.time, sampler));
   }
-  return k;
+  return k - how.first;
 }
 
 }  // namespace app

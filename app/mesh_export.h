@@ -12,6 +12,7 @@ namespace app {
 
 struct MeshExport {
   std::filesystem::path folder;
+  std::int64_t first = 0, end = 0;  ///< numbers of the states: first, ..., end - 1
   int latitudes = 64;  ///< triangles a vesicle: 4 x latitudes x (latitudes - 1)
 };
 
@@ -29,7 +30,7 @@ inline constexpr MeshField mesh_fields[] = {
     {"vesicle", "number of the vesicle, from 0", 1},
 };
 
-/// Hears (state, of states) before each; false stops.
+/// Hears (states written, of states) before each; false stops.
 using ExportProgress = std::function<bool(std::int64_t, std::int64_t)>;
 
 /// Names in the folder.
@@ -38,7 +39,7 @@ inline constexpr const char vtk_series[] = "series.pvd";
 std::string ply_name(std::size_t vesicle, std::int64_t state);
 
 /// FOLDER/state-000000.vtp, ... with all vesicles, and FOLDER/series.pvd with the times. The series names whole files only;
-/// it is written last. Returns the number of states.
+/// it is written last. Returns the number of states written.
 std::int64_t export_vtk(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
 /// FOLDER/vesicle-0-000000.ply, ...: one file a vesicle and state, binary.
 std::int64_t export_ply(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);

@@ -7,6 +7,7 @@
 #include "scene_values.h"
 
 #include "render/palette.h"
+#include "sim/digits.h"
 #include "sim/input_file.h"
 #include "sim/placements.h"
 #include "sim/shapes.h"
@@ -33,6 +34,27 @@ const Selector* find_selector(std::string_view section) {
 
 bool contains(const std::vector<std::string_view>& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// For a key that stands where it does not belong, or is misspelt: " (did you mean 'vesicle.viscosity_contrast'?)", all tables
+/// that have it; empty when no table has a key like it.
+std::string key_elsewhere(std::string_view word, bool misspelt) {
+  std::vector<std::pair<std::string_view, std::string_view>> keys;  // table, key
+  const Settings defaults;
+  visit_sections(defaults, [&](const sim::Section& section, const auto& parameters) {
+    const auto add = [&](const auto& one) {
+      visit(one, [&](const sim::Parameter& p, const auto&) { keys.emplace_back(section.name, p.name); });
+    };
+    if constexpr (requires { parameters.begin(); }) add(typename std::decay_t<decltype(parameters)>::value_type{});
+    else add(parameters);
+  });
+  std::vector<std::string_view> names;
+  for (const auto& [table, key] : keys) names.push_back(key);
+  const std::string_view meant = contains(names, word) ? word : misspelt ? sim::nearest_word(word, names) : "";
+  std::string text;
+  for (const auto& [table, key] : keys)
+    if (key == meant) text += fmt::format("{}'{}.{}'", text.empty() ? "" : " or ", table, key);
+  return text.empty() ? text : fmt::format(" (did you mean {}?)", text);
 }
 
 /// Kinds of a table that read a key; empty: the key belongs to all kinds.
@@ -192,9 +214,11 @@ struct Reader {
     std::vector<std::string_view> known;
     visit(parameters, [&](const sim::Parameter& p, auto&) { known.push_back(p.name); });
     for (const auto& [key, node] : table)
-      if (!contains(known, key.str()))
+      if (!contains(known, key.str())) {
+        const std::string elsewhere = key_elsewhere(key.str(), false);
         fail_at(key.source(), fmt::format("unknown key '{}' in [{}]{}", key.str(), section.name,
-                                          sim::suggestion(key.str(), known)));
+                                          elsewhere.empty() ? sim::suggestion(key.str(), known) : elsewhere));
+      }
     visit(parameters, [&](const sim::Parameter& p, auto& value) {
       if (const toml::node* node = table.get(p.name)) read_value(p, *node, value);
       else if (p.required) fail_at(table.source(), fmt::format("[{}] needs '{}': {}", section.name, p.name, p.meaning));
@@ -278,9 +302,12 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
   std::vector<std::string_view> known{"title"};
   visit_sections(settings, [&](const sim::Section& section, auto&) { known.push_back(section.name); });
   for (const auto& [key, node] : root)
-    if (!contains(known, key.str()))
-      fail_at(key.source(), fmt::format("unknown {} '{}'{}", node.is_table() || node.is_array() ? "table" : "key",
-                                        key.str(), sim::suggestion(key.str(), known)));
+    if (!contains(known, key.str())) {
+      const bool table = node.is_table() || node.is_array_of_tables();
+      const std::string elsewhere = table ? "" : key_elsewhere(key.str(), sim::nearest_word(key.str(), known).empty());
+      fail_at(key.source(), fmt::format("unknown {} '{}'{}", table ? "table" : "key", key.str(),
+                                        elsewhere.empty() ? sim::suggestion(key.str(), known) : elsewhere));
+    }
   if (const toml::node* title = root.get("title"))
     read_value(sim::Parameter{.name = "title", .unit = "", .meaning = "title of the scene"}, *title,
                settings.scene.title);
@@ -289,6 +316,10 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
   if (use == SceneUse::simulate) {
     reader.check_together(settings.scene);
     reader.check_names(settings);
+  }
+  if (const auto poster = settings.movie.poster; use == SceneUse::simulate && poster && *poster > settings.scene.time.end * (1 + 1e-9)) {
+    const auto [wanted, end] = sim::told_apart(*poster, settings.scene.time.end);
+    fail_at(source_of(*root["movie"].as_table(), "poster"), fmt::format("'poster' must be at most time.end, {}, not {}", end, wanted));
   }
   if (const double part = settings.movie.time_per_frame, frames = settings.scene.time.end / part; part > 0 && frames > most_frames)
     fail_at(source_of(*root["movie"].as_table(), "time_per_frame"),

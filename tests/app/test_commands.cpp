@@ -1,5 +1,6 @@
 // The program as a user meets it: exit statuses, messages, and what is left on the disk.
 #include "desk.h"
+#include "sim/digits.h"
 #include "sim/trajectory.h"
 #include "tests/support/catch.h"
 
@@ -347,4 +348,84 @@ TEST_CASE("a shard or a size of half a number, or of one beyond all bounds, is r
     CHECK(o.status != 0);
     CHECK_THAT(o.err, Contains("'" + text + "' is not WIDTHxHEIGHT"));
   }
+}
+
+TEST_CASE("export writes the state nearest to a time, and refuses times that the trajectory does not reach", "[commands]") {
+  const Desk desk;
+  const std::string file = desk.file("t.h5");
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", file, "-q"}).status == 0);
+  const std::string all = desk({"export", file, "--csv", "-"}).out;
+  const std::string one = desk({"export", file, "--csv", "-", "--time", "0.32"}).out;
+  REQUIRE(std::count(one.begin(), one.end(), '\n') == 2);
+  const std::string header = all.substr(0, all.find('\n') + 1);
+  CHECK(one.substr(0, header.size()) == header);
+  CHECK_THAT(one, Contains("\n3,0.3"));
+  CHECK_THAT(all, Contains(one.substr(header.size())));  // the very row of the whole table
+  REQUIRE(desk({"export", file, "--vtk", desk.file("v"), "--ply", desk.file("p"), "--latitudes", "4", "--time", "0.32"}).status == 0);
+  std::set<std::string> meshes;
+  for (const char* folder : {"v", "p"})
+    for (const auto& entry : fs::directory_iterator(desk / folder))
+      if (entry.path().filename().string().front() != '.') meshes.insert(entry.path().filename().string());
+  CHECK(meshes == std::set<std::string>{"state-000003.vtp", "series.pvd", "vesicle-0-000003.ply"});
+  for (const char* time : {"0.6", "-0.1", "nan", "inf"}) {
+    const Outcome refused = desk({"export", file, "--csv", desk.file("x.csv"), std::string("--time=") + time});
+    INFO(time);
+    CHECK(refused.status == 1);
+    CHECK_THAT(refused.err, Contains("from t = 0 to t = 0.5; there is no t = " + std::string(time)));
+    CHECK_FALSE(fs::exists(desk / "x.csv"));
+  }
+}
+
+TEST_CASE("a poster beyond the end is refused, and a run that ended before its own says that there is none", "[commands]") {
+  const Desk desk(scene + "[movie]\nposter = 0.4\n");
+  const Outcome early = desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "--steps", "2"});
+  CHECK(early.status == 0);
+  CHECK_THAT(early.err, Contains("there is no poster: it is to show t = 0.4, and the trajectory ends at t = 0.2"));
+  CHECK_FALSE(fs::exists(desk / "out/poster.png"));
+  const std::string file = desk.file("out/trajectory.h5");
+  CHECK(desk({"render", file, "-o", desk.file("again")}).status == 0);
+  const Outcome refused = desk({"render", file, "-o", desk.file("other"), "--set", "movie.poster=0.3"});
+  CHECK(refused.status == 1);
+  CHECK_THAT(refused.err, Contains("movie.poster: the trajectory goes from t = 0 to t = 0.2; there is no t = 0.3"));
+  CHECK_FALSE(fs::exists(desk / "other"));
+  CHECK(desk({"render", file, "-o", desk.file("other"), "--set", "movie.poster=0.1"}).status == 0);
+  CHECK(fs::exists(desk / "other/poster.png"));
+}
+
+TEST_CASE("a warning of resolution shows a share and a bound that differ", "[commands]") {
+  const auto texts = sim::told_apart(15.004, 15);
+  CHECK(texts.first == "15.004");
+  CHECK(texts.second == "15");
+  CHECK(sim::told_apart(15.2, 15).first == "15.2");
+  CHECK(sim::told_apart(0.1 + 0.2, 0.3).first != sim::told_apart(0.1 + 0.2, 0.3).second);  // neighbours
+  const Desk desk;  // the bound just below the share that the shape has
+  const Outcome coarse = desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--steps", "0", "--set", "vesicle.order=4", "--set",
+                               "vesicle.reduced_volume=0.7", "--set", "numerics.tail_warning=1e-9"});
+  const std::string share = coarse.err.substr(coarse.err.find('(') + 1, coarse.err.find(" % of") - coarse.err.find('(') - 1);
+  INFO(coarse.err);
+  REQUIRE(coarse.err.find(" % of") != std::string::npos);
+  const double rounded = std::stod(share) / 100;  // to three digits
+  for (const double bound : {rounded * (1 - 1e-3), rounded}) {
+    const Outcome warned = desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--force", "--steps", "0", "--set", "vesicle.order=4",
+                                 "--set", "vesicle.reduced_volume=0.7", "--set", "numerics.tail_warning=" + std::to_string(bound)});
+    const std::size_t at = warned.err.find("bound ");
+    if (at == std::string::npos) continue;  // the share was rounded up
+    const std::string limit = warned.err.substr(at + 6, warned.err.find(" %)") - at - 6);
+    CHECK(warned.err.find("(" + limit + " % of") == std::string::npos);
+  }
+}
+
+TEST_CASE("the help of a command says what its options do there", "[commands]") {
+  const Desk desk;
+  const auto help = [&](const char* command) {
+    std::string text = desk({command, "--help"}).out, plain;  // lines are broken
+    for (const char c : text)
+      if (c != ' ' && c != '\n') plain += c;
+      else if (!plain.empty() && plain.back() != ' ') plain += ' ';
+    return plain;
+  };
+  CHECK_THAT(help("run"), Contains("threads (default: numerics.threads") && !Contains("processes"));
+  CHECK_THAT(help("render"), Contains("processes that draw the frames (default: 1)") && !Contains("time.end"));
+  CHECK_THAT(help("export"), Contains("only the saved state nearest to this time"));
+  CHECK_THAT(help("figure"), Contains("the files, without .png"));
 }

@@ -192,3 +192,68 @@ TEST_CASE("overrides change any key, and their errors name them", "[scene]") {
   CHECK_THAT(error_of(good, {"viev.size=[1,2]"}), Contains("did you mean 'view'?"));
   CHECK_THAT(error_of(good, {"view.size=[1,"}), Contains("--set view.size=[1,"));
 }
+
+TEST_CASE("a key without its table, or in another one, is told with the table it belongs to", "[scene]") {
+  CHECK(error_of(good, {"viscosity_contrast=3"}) ==
+        "--set viscosity_contrast=3: unknown key 'viscosity_contrast' (did you mean 'vesicle.viscosity_contrast'?)");
+  CHECK_THAT(error_of(good, {"viscosity_contrst=3"}), Contains("(did you mean 'vesicle.viscosity_contrast'?)"));
+  CHECK_THAT(error_of(good, {"flow.viscosity_contrast=3"}),
+             Contains("unknown key 'viscosity_contrast' in [flow] (did you mean 'vesicle.viscosity_contrast'?)"));
+  CHECK_THAT(error_of(good, {"step=0.1"}), Contains("(did you mean 'time.step'?)"));
+  CHECK_THAT(error_of("viscosity_contrast = 3\n" + good), Contains("s.toml:1:1: ") && Contains("'vesicle.viscosity_contrast'"));
+  CHECK_THAT(error_of(good, {"titel=x"}), Contains("(did you mean 'title'?)"));
+}
+
+TEST_CASE("numbers on the command line may lack the digit before or after their point", "[scene]") {
+  CHECK(parse_scene(good, "s.toml", ".", {"time.end=.5"}).scene.time.end == 0.5);
+  CHECK(parse_scene(good, "s.toml", ".", {"time.end=5."}).scene.time.end == 5);
+  CHECK(parse_scene(good, "s.toml", ".", {"vesicle.center=[-.5, +.25, 1.]"}).scene.vesicles[0].center == sim::Vec3(-0.5, 0.25, 1));
+  CHECK(parse_scene(good, "s.toml", ".", {"time.end=.5e1"}).scene.time.end == 5);
+  CHECK(parse_scene(good, "s.toml", ".", {"title=a.5"}).scene.title == "a.5");  // a text stays as it is
+  CHECK(parse_scene(good, "s.toml", ".", {"title='.5'"}).scene.title == ".5");
+  CHECK_THAT(error_of(good, {"time.end=.x"}), Contains("'end' must be a number"));
+}
+
+TEST_CASE("a number without a fraction is a whole number, with a point or without", "[scene]") {
+  CHECK(parse_scene(replaced("order = 12", "order = 8.0"), "s.toml", ".").scene.vesicles[0].order == 8);
+  CHECK(parse_scene(good, "s.toml", ".", {"view.size=[640.0, 3.6e2]"}).view.size == std::vector<int>{640, 360});
+  CHECK_THAT(error_of(replaced("order = 12", "order = 8.5")), Contains("must be a whole number, not the number 8.5"));
+  CHECK_THAT(error_of(good, {"vesicle.order=inf"}), Contains("must be a whole number"));
+  CHECK_THAT(error_of(good, {"vesicle.order=nan"}), Contains("must be a whole number"));
+  CHECK_THAT(error_of(good, {"vesicle.order=1e300"}), Contains("must be a whole number"));
+  CHECK_THAT(error_of(good, {"vesicle.order=1e12"}), Contains("at most 64"));
+}
+
+TEST_CASE("a byte order mark at the start of a scene or a table is ignored", "[scene]") {
+  const std::string mark = "\xef\xbb\xbf";
+  const support::TemporaryFolder folder;
+  support::write_file(folder / "blob.txt", mark + "coefficients\n1 1 1 0 0\n1 -1 0 1 0\n1 0 0 0 1\n");
+  support::write_file(folder / "centres.txt", mark + "1 2 3\n4 5 6\n");
+  const std::string text = "[[vesicle]]\nshape = \"file\"\nfile = \"blob.txt\"\norder = 4\n[time]\nend = 1\nstep = 0.1\n"
+                           "[placement]\nkind = \"file\"\nfile = \"centres.txt\"\n[flow]\nkind = \"none\"\n";
+  support::write_file(folder / "s.toml", mark + text);
+  const Settings s = app::read_scene(folder / "s.toml");
+  REQUIRE(s.scene.vesicles.size() == 2);
+  CHECK(s.scene.vesicles[0].center == sim::Vec3(1, 2, 3));
+  support::write_file(folder / "centres.txt", "\xef\xbb");  // a broken one is no mark
+  CHECK_THAT(message_of([&] { app::read_scene(folder / "s.toml"); }), Contains("is not a number"));
+}
+
+TEST_CASE("scenes of one title are told apart by the keys that differ, else by their files", "[scene]") {
+  const auto scene = [](const std::vector<std::string>& changes) { return parse_scene(good, "s.toml", ".", changes).scene; };
+  using Names = std::vector<std::string>;
+  CHECK(app::distinct_names({scene({"vesicle.viscosity_contrast=1"}), scene({"vesicle.viscosity_contrast=3"}),
+                             scene({"vesicle.viscosity_contrast=5.5"})},
+                            {"a", "b", "c"}) == Names{"viscosity_contrast = 1", "viscosity_contrast = 3", "viscosity_contrast = 5.5"});
+  CHECK(app::distinct_names({scene({"title=x"}), scene({"title=x", "flow.rate=2"}), scene({"title=y"})}, {"a", "b", "c"}) ==
+        Names{"x, rate = 1", "x, rate = 2", "y"});
+  CHECK(app::distinct_names({scene({}), scene({})}, {"a/t.h5", "b/t.h5"}) == Names{"a/t.h5", "b/t.h5"});
+  CHECK(app::distinct_names({scene({}), scene({"vesicle.order=8"}), scene({"vesicle.order=8"})}, {"a", "b", "c"}) ==
+        Names{"order = 12", "order = 8, b", "order = 8, c"});
+}
+
+TEST_CASE("a poster beyond the end of the scene is refused", "[scene]") {
+  CHECK_THAT(error_of(good + "[movie]\nposter = 2.5\n"), Contains("s.toml:16:10: 'poster' must be at most time.end, 2, not 2.5"));
+  CHECK_THAT(error_of(good + "[movie]\nposter = 2.00001\n"), Contains("at most time.end, 2, not 2.00001"));
+  CHECK(parse_scene(good + "[movie]\nposter = 2\n", "s.toml", ".").movie.poster == 2.0);
+}
