@@ -145,7 +145,7 @@ def treading_frequency(s):
                          f"vesicle.reduced_volume={nu}"], ["figure", "tank-treading", f"{stem}.h5", "-o", str(stem)]):
             subprocess.run([s.program, *command, "-q"], cwd=ROOT, check=True)
         with open(f"{stem}.csv") as file:
-            own = [row for row in csv.DictReader(file) if row["panel"].startswith("frequency") and row["curve"] == "λ = 1"]
+            own = [row for row in csv.DictReader(file) if row["panel"].startswith("frequency") and row["curve"] == "Tanktread, λ = 1"]
         out.append(s.check(f"ν = {nu}: ω/γ̇", float(own[0]["y"]), frequency, tolerance))
     return out
 
