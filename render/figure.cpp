@@ -2,6 +2,8 @@
 
 #include "figure_kinds.h"
 
+#include "sim/digits.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,9 +61,11 @@ std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, c
   if (!parameters.times.empty()) {
     for (const double time : parameters.times) {
       const double end = state_times.back();
-      if (!(time >= 0 && time <= end * (1 + 1e-9)))
+      if (!(time >= 0 && time <= end * (1 + 1e-9))) {
+        const auto [last, wanted] = sim::told_apart(end, time, 6);
         throw std::invalid_argument(
-            fmt::format("the trajectory goes from t = 0 to t = {:.6g}; there is no t = {:.6g} for figure.times", end, time));
+            fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {} for figure.times", last, wanted));
+      }
       const auto nearest = std::min_element(state_times.begin(), state_times.end(),
                                             [&](double a, double b) { return std::abs(a - time) < std::abs(b - time); });
       chosen.push_back(static_cast<std::size_t>(nearest - state_times.begin()));

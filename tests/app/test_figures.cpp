@@ -95,6 +95,7 @@ TEST_CASE("a figure that cannot be says why in one sentence", "[figure]") {
   CHECK_THAT(complaint("overlay", {"--set", "figure.plane_point=[0,9,0]"}), Contains("cuts no vesicle"));
   CHECK_THAT(complaint("streamlines", {"--set", "figure.plane_point=[0,9,0]"}), Contains("cuts no vesicle"));
   CHECK_THAT(complaint("overlay", {"--set", "figure.plane_normal=[0,0,0]"}), Contains("plane_normal"));
+  CHECK_THAT(complaint("overlay", {"--set", "figure.times=[0.30000002]"}), Contains("to t = 0.3; there is no t = 0.30000002 for figure.times"));
 }
 
 TEST_CASE("a figure of tank-treading refuses a vesicle that tumbles and says what a short run leaves open", "[figure]") {
