@@ -3,6 +3,7 @@
 
 #include "interrupt.h"
 #include "options.h"
+#include "owned_files.h"
 #include "progress.h"
 #include "reproduce_report.h"
 
@@ -15,6 +16,7 @@ struct Effort {
   bool quick = false;  ///< small orders and short times: does it run at all
   bool full = false;   ///< the orders that take hours, too
   const Options& options;
+  ResultFiles& files;  ///< what it writes, the trajectories apart
   Progress& progress;
 };
 
