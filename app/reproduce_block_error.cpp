@@ -70,18 +70,19 @@ Report reproduce_block_error(const Effort& effort) {
       scene.numerics.gmres_tolerance = 1e-11;
       const sim::Setting setting = sim::make_setting(scene, plans);
       sim::Dynamics d = sim::initial_dynamics(setting);
-      const sim::State now = sim::evaluate(setting, d);
+      const sim::State now = sim::evaluate(setting, d).value();
       for (std::size_t k = 0; k < 2; ++k) d.vesicles[k].motion = {now.vesicles[k].velocity, now.vesicles[k].tension};
       const auto advance = [&](const char* scheme) {
-        return sim::find_row(sim::scheme_catalogue(), scheme)->function({setting, d, paper_step, scene.flows});
+        return sim::find_row(sim::scheme_catalogue(), scheme)->function.advance({setting, d, paper_step, scene.flows}).value();
       };
       const sim::Advance exact = advance("globally-implicit");
       const auto error_of = [&](const sim::Advance& block) {
         double difference = 0, size = 0;
         for (std::size_t k = 0; k < 2; ++k) {
-          difference += (block.positions[k].values - exact.positions[k].values).squaredNorm() +
-                        (block.motions[k].tension.values - exact.motions[k].tension.values).squaredNorm();
-          size += exact.positions[k].values.squaredNorm() + exact.motions[k].tension.values.squaredNorm();
+          const sim::Moved &is = block.vesicles[k], &should = exact.vesicles[k];
+          difference += (is.position.values - should.position.values).squaredNorm() +
+                        (is.motion.tension.values - should.motion.tension.values).squaredNorm();
+          size += should.position.values.squaredNorm() + should.motion.tension.values.squaredNorm();
         }
         return std::sqrt(difference / size);
       };

@@ -56,7 +56,7 @@ Report reproduce_cost(const Effort& effort) {
         stop_if_interrupted();
         effort.progress.show(static_cast<double>(k) / steps, fmt::format("λ = {}, p = {}", reference.contrast, p));
         const sim::Motion before = dynamics.vesicles[0].motion;
-        for (int part = 0; part < parts; ++part) dynamics = sim::take_step(setting, dynamics, paper_step / parts).dynamics;
+        for (int part = 0; part < parts; ++part) dynamics = sim::take_step(setting, dynamics, paper_step / parts).value().dynamics;
         if (k % every == every - 1) {
           const sim::VesicleDynamics& v = dynamics.vesicles[0];
           const std::vector<sim::Coefficients> x{v.position};

@@ -125,7 +125,7 @@ Report reproduce_spectra(const Effort& effort) {
   while (dynamics.time < end * (1 - 1e-9)) {
     stop_if_interrupted();
     effort.progress.show(dynamics.time / end, "the shape");
-    dynamics = sim::take_step(setting, dynamics, 0.05).dynamics;
+    dynamics = sim::take_step(setting, dynamics, 0.05).value().dynamics;
   }
   sim::Coefficients x = dynamics.vesicles[0].position;
   const sim::Coefficients fine = sim::resized(x, q), h = sim::mean_curvature(plans, fine, q);

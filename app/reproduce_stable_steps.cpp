@@ -39,21 +39,21 @@ FixedRun run_fixed(const sim::Scene& scene, sim::Plans& plans, double step, doub
   FixedRun run;
   const sim::Setting setting = sim::make_setting(scene, plans);
   sim::Dynamics dynamics = sim::initial_dynamics(setting);
-  try {
-    while (dynamics.time < end * (1 - 1e-12)) {
-      stop_if_interrupted();
-      sim::Step taken = sim::take_step(setting, dynamics, step);
-      dynamics = std::move(taken.dynamics);
-      run.time = dynamics.time;
-      run.gap = std::min(run.gap, taken.record.gap);
-      run.area_error = 0;
-      for (const sim::VesicleStep& vesicle : taken.record.vesicles)
-        run.area_error = std::max(run.area_error, std::abs(vesicle.area_error));
+  while (dynamics.time < end * (1 - 1e-12)) {
+    stop_if_interrupted();
+    sim::Attempt<sim::Step> taken = sim::take_step(setting, dynamics, step);
+    if (!taken) {
+      run.reason = taken.rejection().reason;
+      return run;
     }
-    run.stable = true;
-  } catch (const sim::StepFailure& failure) {
-    run.reason = failure.what();
+    dynamics = std::move(taken->dynamics);
+    run.time = dynamics.time;
+    run.gap = std::min(run.gap, taken->record.gap);
+    run.area_error = 0;
+    for (const sim::VesicleStep& vesicle : taken->record.vesicles)
+      run.area_error = std::max(run.area_error, std::abs(vesicle.area_error));
   }
+  run.stable = true;
   return run;
 }
 

@@ -37,9 +37,9 @@ Report reproduce_tank_treading(const Effort& effort) {
       while (dynamics.time < end * (1 - 1e-9)) {
         stop_if_interrupted();
         effort.progress.show((done + dynamics.time / end) / all, fmt::format("λ = {}, ν = {}", sweep.contrast, volume));
-        dynamics = sim::take_step(setting, dynamics, step).dynamics;
+        dynamics = sim::take_step(setting, dynamics, step).value().dynamics;
       }
-      points.push_back(steady_point(plans, sim::evaluate(setting, dynamics).vesicles[0], sweep.contrast, 1));
+      points.push_back(steady_point(plans, sim::evaluate(setting, dynamics).value().vesicles[0], sweep.contrast, 1));
       done += 1;
     }
 

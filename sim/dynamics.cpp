@@ -1,8 +1,10 @@
 #include "dynamics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 namespace sim {
 
@@ -13,25 +15,17 @@ constexpr double largest_number = 1e150;  // the square of every number is one, 
 
 /// One list of members for both directions.
 template <class Archive, class D>
-void transfer_vesicle(Archive& ar, D& v) {
-  for (auto* c : {&v.position, &v.displacement, &v.motion.velocity, &v.motion.tension, &v.labels, &v.saved_position,
-                  &v.saved_velocity})
-    ar(*c);
-  ar(v.tracers);
-  for (auto* frame : {&v.frame, &v.frame_before, &v.carrier})
-    for (auto* x : {&frame->motion.translation, &frame->motion.rotation, &frame->motion.centre})
-      for (int k = 0; k < 3; ++k) ar((*x)[k]);
-  for (auto* frame : {&v.frame, &v.frame_before, &v.carrier})
-    for (int k = 0; k < 9; ++k) ar(frame->drift(k));
-  ar(v.area), ar(v.volume), ar(v.energy), ar(v.tail), ar(v.upsampling), ar(v.upsampling_due), ar(v.high_share);
-  ar(v.relabelled), ar(v.labels_laid), ar(v.labels_laid_time), ar(v.warned);
+void transfer(Archive& ar, D& d) {
+  ar(d.step), ar(d.saves), ar(d.time), ar(d.dt_limit), ar(d.calm);
+  ar.size(d.vesicles);
+  for (auto& v : d.vesicles) visit(v, [&](Part, auto& member) { ar(member); });
 }
 
-template <class Archive, class D>
-void transfer(Archive& ar, D& d) {
-  ar(d.step), ar(d.saves), ar(d.time), ar(d.dt_before), ar(d.dt_limit), ar(d.calm), ar(d.history);
-  ar.size(d.vesicles);
-  for (auto& v : d.vesicles) transfer_vesicle(ar, v);
+template <class Archive, class F>
+void transfer_frame(Archive& ar, F& frame) {
+  for (auto* x : {&frame.motion.translation, &frame.motion.rotation, &frame.motion.centre})
+    for (int k = 0; k < 3; ++k) ar((*x)[k]);
+  for (int k = 0; k < 9; ++k) ar(frame.drift(k));
 }
 
 struct Writer {
@@ -44,6 +38,11 @@ struct Writer {
     numbers.insert(numbers.end(), m.data(), m.data() + m.size());
   }
   void operator()(const Coefficients& c) { (*this)(c.order), (*this)(c.values); }
+  void operator()(const Frame& frame) { transfer_frame(*this, frame); }
+  void operator()(const History& history) {
+    (*this)(history.levels.size());
+    for (const PastLevel& level : history.levels) visit_level(level, [this](const char*, const auto& part) { (*this)(part); });
+  }
   void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
 };
 
@@ -82,6 +81,11 @@ struct Reader {
     (*this)(c.values);
     if (c.values.rows() != coefficient_count(c.order)) refuse("an order in it does not fit its numbers");
   }
+  void operator()(Frame& frame) { transfer_frame(*this, frame); }
+  void operator()(History& history) {
+    history.levels.resize(std::size_t(whole(0, most_past_levels)));
+    for (PastLevel& level : history.levels) visit_level(level, [this](const char*, auto& part) { (*this)(part); });
+  }
   void size(std::vector<VesicleDynamics>& v) { v.resize(std::size_t(whole(layout.vesicles, layout.vesicles))); }
 };
 
@@ -89,29 +93,76 @@ bool is_field(const Coefficients& c, int order, int columns) { return c.order ==
 
 void check(const VesicleDynamics& v, const TrajectoryLayout& layout) {
   const int p = v.position.order;
-  for (const Coefficients* c : {&v.position, &v.displacement, &v.motion.velocity, &v.saved_position, &v.saved_velocity})
-    if (p > layout.order || !is_field(*c, p, 3)) refuse("its fields are of different orders");
-  if (!is_field(v.motion.tension, p, 1)) refuse("its fields are of different orders");
-  if (!is_field(v.labels, v.labels.order, 3) || v.labels.order > layout.label_order) refuse("its labels do not fit");
-  if (v.tracers.rows() != layout.tracers || v.tracers.cols() != 3) refuse("its tracers do not fit");
+  if (p > layout.order) refuse("its fields are of different orders");
+  const auto look = [&]<class Member>(Part part, const Member& member) {
+    if constexpr (std::is_same_v<Member, Coefficients>) {
+      if (part == Part::label) {
+        if (!is_field(member, member.order, 3) || member.order > layout.label_order) refuse("its labels do not fit");
+      } else if (!is_field(member, p, part == Part::scalar ? 1 : 3)) {
+        refuse("its fields are of different orders");
+      }
+    } else if constexpr (std::is_same_v<Member, History>) {
+      for (const PastLevel& level : member.levels) {
+        if (!is_field(level.position, p, 3)) refuse("its fields are of different orders");
+        if (!(level.dt > 0)) refuse("a time in it is impossible");
+      }
+    } else if constexpr (std::is_same_v<Member, Matrix>) {
+      if (member.rows() != layout.tracers || member.cols() != 3) refuse("its tracers do not fit");
+    }
+  };
+  visit(v, look);
   if (!(v.area > 0) || v.upsampling < 1 || v.upsampling > most_upsampling) refuse("a vesicle in it is impossible");
+}
+
+/// All vesicles have taken the same steps.
+void check_histories(const Dynamics& d) {
+  for (const VesicleDynamics& v : d.vesicles) {
+    const auto& levels = v.history.levels;
+    const auto& first = d.vesicles.front().history.levels;
+    if (!std::equal(levels.begin(), levels.end(), first.begin(), first.end(),
+                    [](const PastLevel& a, const PastLevel& b) { return a.dt == b.dt; }))
+      refuse("its vesicles have different pasts");
+  }
 }
 
 }  // namespace
 
+void carry(Plans& plans, const Relabelling& r, VesicleDynamics& v) {
+  const Coefficients before = v.position;
+  visit(v, [&]<class Member>(Part part, Member& member) {
+    if constexpr (std::is_same_v<Member, Coefficients>) {
+      member = pulled_back(plans, r, member);
+    } else if constexpr (std::is_same_v<Member, History>) {
+      carry(plans, r, member);
+    } else if constexpr (std::is_same_v<Member, Matrix>) {
+      if (part == Part::points) member = carried_points(r, before, v.position, member);
+    }
+  });
+}
+
 std::vector<double> serialised(const Dynamics& d) {
   Writer writer;
+  writer(resume_version);
   transfer(writer, d);
   return std::move(writer.numbers);
 }
 
+std::size_t resume_numbers(const Dynamics& d, int past_levels) {
+  Dynamics full = d;
+  for (VesicleDynamics& v : full.vesicles)
+    while (static_cast<int>(v.history.levels.size()) < past_levels) v.history.levels.push_back({v.position, {}, {}, 1});
+  return serialised(full).size();
+}
+
 Dynamics deserialised(std::span<const double> numbers, const TrajectoryLayout& layout) {
   Reader reader{numbers, layout};
+  if (reader.next() != resume_version) refuse("it is of another version");
   Dynamics d;
   transfer(reader, d);
   if (reader.at != numbers.size()) refuse("there is more in it");
   for (const VesicleDynamics& v : d.vesicles) check(v, layout);
-  if (d.saves < 1 || d.time < 0 || !(d.dt_limit > 0) || (d.history && !(d.dt_before > 0))) refuse("a time in it is impossible");
+  check_histories(d);
+  if (d.saves < 1 || d.time < 0 || !(d.dt_limit > 0)) refuse("a time in it is impossible");
   return d;
 }
 

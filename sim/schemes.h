@@ -1,13 +1,16 @@
 // Time stepping schemes: how one step moves all vesicles. Checks, corrections and relabelling come after, in stepper.h.
 //
+// A scheme maps a state and a step to positions, motions, the history of the next step and an estimate of its own local error,
+// or says why there is no such step. A row of the catalogue tells how far back a scheme looks; nothing else need know.
+//
 // Of first order, everything frozen at x_n, section 3.4 of the paper:
 //   explicit           tension by (43), then x+ = x + dt/alpha (...); the others' forces and one's own motion lag
 //   block-jacobi       tension by (43), then the position implicitly by (44)
 //   block-implicit     both together, vesicle by vesicle; the others' forces lag
 //   globally-implicit  backward Euler (38) on the coupled system
-// bdf2: in a frame that moves with the vesicle (below), operators, normal and background flow at x* = x_n + w dt/dt_before,
-//   u+ = (x+ - h)/c. With r = dt/dt_before, h = x_n + r^2/(1+2r) w and c = dt (1+r)/(1+2r); second order for steps of any
-//   length. It starts with one step of extrapolated backward Euler, 2 x(two half steps) - x(one step).
+// bdf2: in a frame that moves with the vesicle (below), operators, normal and background flow at x* = x_n + r w,
+//   u+ = (x+ - h)/c. With r = dt/dt_before, w = x_n - x_{n-1}, h = x_n + r^2/(1+2r) w and c = dt (1+r)/(1+2r); second order for
+//   steps of any length. It starts with one step of extrapolated backward Euler, 2 x(two half steps) - x(one step).
 //
 // The frame of a vesicle turns as its shape was seen to turn at the last two times, at a rate linear in time, and drifts along
 // with the gradient of the flow (rigid.h). Positions of the past are carried along to the new time by its mean motion in each step, and only what the
@@ -15,15 +18,11 @@
 // and one that turns unsteadily has an error of second order in the change of its rate alone.
 #pragma once
 
+#include "attempt.h"
 #include "dynamics.h"
 #include "suspension.h"
 
 namespace sim {
-
-/// Why a step was not accepted.
-struct StepFailure : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// A scene with its plans: what stays the same during a run.
 struct Setting {
@@ -41,27 +40,38 @@ struct StepProblem {
   std::vector<FlowParameters> flows;  ///< none that is switched within the step
 };
 
-/// New positions, their motions, the frame of each shape at the new time and the mean one of this step, and what the solver did.
+/// What becomes of one vesicle: its position and motion at the new time, the frame of its shape there, and its history then.
+struct Moved {
+  Coefficients position;
+  Motion motion;
+  Frame frame;
+  History history;
+  double error = 0;  ///< estimated local error of the position: root of its mean square over the parameters, in area radii
+};
+
 struct Advance {
-  std::vector<Coefficients> positions;
-  std::vector<Motion> motions;
-  std::vector<Frame> frames, carriers;
+  std::vector<Moved> vesicles;
   int iterations = 0;
   double residual = 0;
 };
 
-/// Advances all vesicles by dt.
-using SchemeFunction = Advance (*)(const StepProblem&);
-const std::vector<CatalogueRow<SchemeFunction>>& scheme_catalogue();
+struct Scheme {
+  Attempt<Advance> (*advance)(const StepProblem&) = nullptr;  ///< all vesicles, by dt
+  int past_levels = 0;         ///< how many earlier positions it looks back at
+  bool past_corrected = true;  ///< they move along with the correction of area and volume
+};
+const std::vector<CatalogueRow<Scheme>>& scheme_catalogue();
+/// Of time.scheme; throws std::invalid_argument where there is none of that name.
+const Scheme& scheme_of(const Scene&);
 
 /// Two membranes nearer than this stop the run: numerics.gap_floor, or 0.001 area radii of the smallest vesicle.
 double gap_floor(const Setting&, const Dynamics&);
 
-/// Operators at frozen positions with everything that the scene says of them.
+/// Operators at frozen positions with everything that the scene says of them. Throws std::domain_error where vesicles cross.
 Suspension freeze(const Setting&, const Dynamics&, std::span<const Coefficients> positions);
 
 /// Solves for the motions at frozen positions, relative to those of the frames.
-SuspensionSolve solve(const Setting&, const Suspension&, double c, std::span<const Coefficients> forcing,
+Attempt<SuspensionSolve> solve(const Setting&, const Suspension&, double c, std::span<const Coefficients> forcing,
                       std::span<const Motion> guess, std::span<const Frame> frames);
 
 /// Of every vesicle; sizes: A0 and V0.

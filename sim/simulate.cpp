@@ -28,25 +28,25 @@ double step_length(const Dynamics& d, double target) {
 }
 
 /// Halves a failing step down to step / 2^step_retries, and lets it grow again after some calm ones.
-Step step_with_retries(const Setting& s, Dynamics& d, double target, const SimulationObserver& observer) {
+Attempt<Step> step_with_retries(const Setting& s, Dynamics& d, double target, const SimulationObserver& observer) {
   constexpr std::int64_t calm_enough = 8;
   const double longest = longest_step(s.scene), shortest = std::ldexp(longest, -s.scene.numerics.step_retries);
   for (int retries = 0;; ++retries) {
     const double dt = step_length(d, target);
-    try {
-      Step step = take_step(s, d, dt);
-      step.record.retries = retries;
-      if (std::abs(step.dynamics.time - target) < same_time * dt) step.dynamics.time = step.record.time = target;
-      if (++step.dynamics.calm >= calm_enough && d.dt_limit < longest) {
-        step.dynamics.dt_limit = std::min(2 * d.dt_limit, longest);
-        step.dynamics.calm = 0;
+    if (Attempt<Step> step = take_step(s, d, dt)) {
+      Dynamics& after = step->dynamics;
+      step->record.retries = retries;
+      if (std::abs(after.time - target) < same_time * dt) after.time = step->record.time = target;
+      if (++after.calm >= calm_enough && d.dt_limit < longest) {
+        after.dt_limit = std::min(2 * d.dt_limit, longest);
+        after.calm = 0;
       }
       return step;
-    } catch (const StepFailure& failure) {
-      if (dt / 2 < shortest * (1 - same_time))
-        throw StepFailure(fmt::format("{}, also in steps of {:.3g}", failure.what(), dt));
+    } else {
+      const std::string& reason = step.rejection().reason;
+      if (dt / 2 < shortest * (1 - same_time)) return Rejection{fmt::format("{}, also in steps of {:.3g}", reason, dt)};
       if (observer.on_warning)
-        observer.on_warning(fmt::format("t = {:.6g}: {}; trying a step of {:.3g}", d.time, failure.what(), dt / 2));
+        observer.on_warning(fmt::format("t = {:.6g}: {}; trying a step of {:.3g}", d.time, reason, dt / 2));
       d.dt_limit = dt / 2;
       d.calm = 0;
     }
@@ -66,7 +66,7 @@ TrajectoryLayout layout_for(const Scene& scene, const Dynamics& d) {
   const double saved = scene.time.save_every ? std::ceil(scene.time.end / *scene.time.save_every) : steps;
   layout.states = std::int64_t(std::min(saved, 1e6)) + 2;
   layout.steps = std::int64_t(std::min(std::max(steps, saved), 1e7)) + 16;
-  layout.resume = std::int64_t(serialised(d).size());
+  layout.resume = std::int64_t(resume_numbers(d, scheme_of(scene).past_levels));
   return layout;
 }
 
@@ -141,7 +141,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
     if (observer.on_warning)
       for (const std::string& warning : header.warnings) observer.on_warning(warning);
     for (VesicleDynamics& v : d.vesicles) v.warned = v.tail > scene.numerics.tail_warning;
-    const State first = evaluate(setting, d);
+    const State first = evaluate(setting, d).value();
     expect(setting, d, first);
     const TrajectoryLayout layout = layout_for(scene, d);
     mark_saved(d, first);
@@ -157,14 +157,21 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
   };
   SimulationObserver noting = observer;
   noting.on_warning = warn;
-  const auto save = [&] {
-    const State state = evaluate(setting, d);
-    file->append(state, records);
+  const auto save = [&]() -> std::optional<Rejection> {
+    const Attempt<State> state = evaluate(setting, d);
+    if (!state) return state.rejection();
+    file->append(*state, records);
     records.clear();
-    mark_saved(d, state);
-    if (observer.on_state) observer.on_state(state);
+    mark_saved(d, *state);
+    if (observer.on_state) observer.on_state(*state);
+    return std::nullopt;
   };
   SimulationOutcome outcome;
+  const auto fail = [&](const Rejection& rejection) {
+    outcome.end = SimulationEnd::failed;
+    outcome.reason = fmt::format("t = {:.6g}: {}", d.time, rejection.reason);
+    file->note("stopped at " + outcome.reason);
+  };
   const std::int64_t first_step = d.step;
   while (d.time < scene.time.end * (1 - 1e-12)) {
     if (options.steps >= 0 && d.step - first_step >= options.steps) {
@@ -173,17 +180,23 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
     }
     const bool every_step = !scene.time.save_every;
     const double due = save_time(scene, d), switched = next_switch(scene.flows, d.time), target = std::min(due, switched);
-    try {
-      Step step = step_with_retries(setting, d, target, noting);
-      d = std::move(step.dynamics);
-      records.push_back(step.record);
-      if (observer.on_step) observer.on_step(d, step.record);
-      if (every_step || d.time == due) save();
-      if (d.time == switched) begin_anew(setting, d);
-    } catch (const StepFailure& error) {
-      outcome.end = SimulationEnd::failed;
-      outcome.reason = fmt::format("t = {:.6g}: {}", d.time, error.what());
-      file->note("stopped at " + outcome.reason);
+    Attempt<Step> step = step_with_retries(setting, d, target, noting);
+    if (!step) {
+      fail(step.rejection());
+      break;
+    }
+    d = std::move(step->dynamics);
+    records.push_back(step->record);
+    if (observer.on_step) observer.on_step(d, step->record);
+    std::optional<Rejection> unsaved;
+    if (every_step || d.time == due) unsaved = save();
+    if (!unsaved && d.time == switched) {
+      Attempt<Dynamics> anew = begun_anew(setting, d);
+      if (anew) d = std::move(*anew);
+      else unsaved = anew.rejection();
+    }
+    if (unsaved) {
+      fail(*unsaved);
       break;
     }
     for (std::size_t k = 0; k < d.vesicles.size(); ++k)  // one warning a vesicle and run: a shape may cross the bound often
@@ -201,11 +214,9 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
       break;
     }
   }
-  if (outcome.end == SimulationEnd::failed && file->last_time() < d.time) try {
-      save();  // the last good state
-    } catch (const StepFailure& failure) {
-      file->note(fmt::format("t = {:.6g}: {}", d.time, failure.what()));
-    }
+  if (outcome.end == SimulationEnd::failed && file->last_time() < d.time)
+    if (const auto rejection = save())  // the last good state
+      file->note(fmt::format("t = {:.6g}: {}", d.time, rejection->reason));
   file->append_steps(records);
   file->finish_resume(serialised(d), d.step);
   outcome.step = d.step;
@@ -221,7 +232,7 @@ Preview preview(const Scene& scene) {
   Plans plans;
   const Setting setting = make_setting(scene, plans);
   const Dynamics d = initial_dynamics(setting);
-  return {evaluate(setting, d), scene_warnings(setting, d)};
+  return {evaluate(setting, d).value(), scene_warnings(setting, d)};
 }
 
 }  // namespace sim

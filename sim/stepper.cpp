@@ -10,6 +10,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <type_traits>
 
 namespace sim {
 
@@ -34,11 +36,7 @@ bool relabel_vesicle(const Setting& s, VesicleDynamics& v) {
     v.high_share = r.high_before;
     return false;
   }
-  const Coefficients before = v.position;
-  for (Coefficients* c : {&v.position, &v.displacement, &v.motion.velocity, &v.motion.tension, &v.labels,
-                          &v.saved_position, &v.saved_velocity})
-    *c = pulled_back(s.plans, r, *c);
-  v.tracers = carried_points(r, before, v.position, v.tracers);
+  carry(s.plans, r, v);
   v.high_share = high_degree_share(v.position);
   ++v.relabelled;
   return true;
@@ -51,24 +49,34 @@ bool relabelling_due(const std::string& mode, const VesicleDynamics& v) {
   return high_degree_share(v.position) > std::max(growth * v.high_share, negligible);
 }
 
-/// Shifts x to the area and volume of the start; returns the longest shift.
-double correct(const Setting& s, VesicleDynamics& v, const Geometry& g) {
+/// Shifts x to the area and volume of the start, and its past along with it if the scheme says so; the longest shift.
+Attempt<double> correct(const Setting& s, const Scheme& scheme, VesicleDynamics& v, const Geometry& g) {
   const Correction c = is_sphere({v.area, v.volume}) ? volume_correction(s.plans, v.position, g, v.area, v.volume)
                                                    : area_volume_correction(s.plans, v.position, g, v.area, v.volume);
   if (!c.converged || c.largest > 0.1 * std::sqrt(v.area / four_pi))
-    throw StepFailure(fmt::format("the area and volume correction failed (shift {:.1e})", c.largest));
+    return Rejection{fmt::format("the area and volume correction failed (shift {:.1e})", c.largest)};
   v.position.values += c.shift.values;
+  if (scheme.past_corrected) move_along(v.history, c.shift);
   return c.largest;
 }
 
-/// `after`: the geometry that the step has led to.
-void check_step(const NumericsParameters& n, const Geometry& after, double area_before, double energy_before) {
+/// Why a step must not have led to this geometry, if so.
+std::optional<Rejection> objection(const NumericsParameters& n, const Geometry& after, double area_before, double energy_before) {
   const double change = after.dA.sum() / area_before - 1;
   if (!(std::abs(change) <= n.step_area_bound))
-    throw StepFailure(fmt::format("the area changed by {:.2g} % in one step", 100 * change));
+    return Rejection{fmt::format("the area changed by {:.2g} % in one step", 100 * change)};
   const double energy = energy_of(after);
   if (!(std::abs(energy - energy_before) <= n.step_energy_bound * energy_before))
-    throw StepFailure(fmt::format("the bending energy jumped from {:.4g} to {:.4g}", energy_before, energy));
+    return Rejection{fmt::format("the bending energy jumped from {:.4g} to {:.4g}", energy_before, energy)};
+  return std::nullopt;
+}
+
+/// Geometry refuses surfaces that are none, and crossings: a step that leads to one is rejected.
+template <class F>
+auto within_domain(F&& f) -> decltype(f()) try {
+  return f();
+} catch (const std::domain_error& error) {
+  return Rejection{error.what()};
 }
 
 }  // namespace
@@ -134,12 +142,14 @@ Dynamics initial_dynamics(const Setting& s) {
     const int p = v.position.order;
     if (const Measures given = measures(measured_geometry(s.plans, v.position)); is_sphere({given.area, given.volume}))
       make_round(v.position, given.volume);
-    v.displacement = v.saved_velocity = v.motion.velocity = {p, Matrix::Zero(coefficient_count(p), 3)};
-    v.motion.tension = {p, Matrix::Zero(coefficient_count(p), 1)};
-    v.saved_position = v.position;
     const int label_order = s.scene.numerics.label_order;
     v.labels = fresh_labels(label_order > 0 ? label_order : std::max(2 * p, 24));
     v.tracers = tracer_directions();
+    v.saved_position = v.position;
+    visit(v, [&]<class Member>(Part part, Member& member) {  // fields that nothing is known of yet
+      if constexpr (std::is_same_v<Member, Coefficients>)
+        if (member.values.size() == 0) member = {p, Matrix::Zero(coefficient_count(p), part == Part::scalar ? 1 : 3)};
+    });
     const Geometry g = measured_geometry(s.plans, v.position);
     const Measures measured = measures(g);
     v.area = measured.area;
@@ -168,25 +178,32 @@ Dynamics initial_dynamics(const Setting& s) {
 namespace {
 
 /// Checks, correction, relabelling and renewal of one vesicle after its scheme has moved it.
-VesicleStep finish_vesicle(const Setting& s, VesicleDynamics& v, Coefficients position, Motion motion, const Frame& frame,
-                           const Frame& carrier, bool history, double dt, double time) {
+Attempt<VesicleStep> finish_vesicle(const Setting& s, VesicleDynamics& v, Moved moved, double time) {
   const NumericsParameters& n = s.scene.numerics;
-  if (!position.values.allFinite()) throw StepFailure("a position is not finite");
-  const int p = position.order;
+  const Scheme& scheme = scheme_of(s.scene);
+  if (!moved.position.values.allFinite()) return Rejection{"a position is not finite"};
+  const int p = moved.position.order;
   const Basis& measured = s.plans.basis(p, measure_order(p));
-  const Geometry moved = geometry(measured, position);
-  check_step(n, moved, n.correction ? v.area : area_volume(measured, v.position).area, v.energy);
-  v.displacement.values = position.values - carried(carrier, dt, v.position).values;
-  v.carrier = carrier;
-  v.frame_before = history ? v.frame : frame;  // the flow's frame, with which a run starts, is of another kind
-  v.frame = frame;
-  v.position = std::move(position);
-  v.motion = std::move(motion);
+  const Geometry there = geometry(measured, moved.position);
+  if (auto rejection = objection(n, there, n.correction ? v.area : area_volume(measured, v.position).area, v.energy))
+    return *rejection;
+  v.position = std::move(moved.position);
+  v.motion = std::move(moved.motion);
+  v.frame = moved.frame;
+  v.history = std::move(moved.history);
   VesicleStep record;
-  if (n.correction) record.correction = correct(s, v, moved);
+  const auto correct_to = [&](const Geometry& g) -> std::optional<Rejection> {
+    const Attempt<double> shift = correct(s, scheme, v, g);
+    if (!shift) return shift.rejection();
+    record.correction = std::max(record.correction, *shift);
+    return std::nullopt;
+  };
+  if (n.correction)
+    if (auto rejection = correct_to(there)) return *rejection;
   if (relabelling_due(n.reparametrization, v) && relabel_vesicle(s, v)) {
     record.relabelled = 1;
-    if (n.correction) record.correction = std::max(record.correction, correct(s, v, measured_geometry(s.plans, v.position)));
+    if (n.correction)
+      if (auto rejection = correct_to(measured_geometry(s.plans, v.position))) return *rejection;
     if (labels_wound_up(v.labels)) {
       v.labels = fresh_labels(v.labels.order);
       ++v.labels_laid;
@@ -208,71 +225,83 @@ VesicleStep finish_vesicle(const Setting& s, VesicleDynamics& v, Coefficients po
   return record;
 }
 
+/// Finishes all vesicles; of several rejections that of the first vesicle counts.
+std::optional<Rejection> finish_vesicles(const Setting& s, Dynamics& d, Advance& advance, StepRecord& record) {
+  const int n = int(d.vesicles.size());
+  record.vesicles.resize(n);
+  std::vector<std::optional<Rejection>> rejections(n);
+  parallel_for(n, [&](int k) {
+    const Attempt<VesicleStep> finished =
+        within_domain([&] { return finish_vesicle(s, d.vesicles[k], std::move(advance.vesicles[k]), d.time); });
+    if (finished) record.vesicles[k] = *finished;
+    else rejections[k] = finished.rejection();
+  });
+  for (const auto& rejection : rejections)
+    if (rejection) return rejection;
+  return std::nullopt;
+}
+
 }  // namespace
 
-Step take_step(const Setting& s, const Dynamics& before, double dt) {
-  const SchemeFunction scheme = find_row(scheme_catalogue(), s.scene.time.scheme)->function;
+Attempt<Step> take_step(const Setting& s, const Dynamics& before, double dt) {
+  const auto flows = acting_flows(s.scene.flows, before.time, before.time + dt);
+  Attempt<Advance> advance = within_domain([&] { return scheme_of(s.scene).advance({s, before, dt, flows}); });
+  if (!advance) return advance.rejection();
   Step step{before, {}};
   Dynamics& d = step.dynamics;
   StepRecord& record = step.record;
-  try {
-    Advance advance = scheme({s, before, dt, acting_flows(s.scene.flows, before.time, before.time + dt)});
-    d.time = before.time + dt;
-    record.vesicles.resize(d.vesicles.size());
-    parallel_for(int(d.vesicles.size()), [&](int k) {
-      record.vesicles[k] =
-          finish_vesicle(s, d.vesicles[k], std::move(advance.positions[k]), std::move(advance.motions[k]), advance.frames[k],
-                         advance.carriers[k], before.history, dt, d.time);
-    });
-    const Gap gap = smallest_gap(s.plans, positions(d));
-    if (gap.crossing || gap.distance < gap_floor(s, d))
-      throw StepFailure(fmt::format("vesicles {} and {} {}", gap.first, gap.second,
-                                    gap.crossing ? "would cross" : fmt::format("would come within {:.2g}", gap.distance)));
-    record.gap = gap.distance;
-    record.iterations = advance.iterations;
-    record.residual = advance.residual;
-  } catch (const std::domain_error& error) {
-    throw StepFailure(error.what());
-  }
+  d.time = before.time + dt;
+  if (auto rejection = finish_vesicles(s, d, *advance, record)) return *rejection;
+  const Gap gap = smallest_gap(s.plans, positions(d));
+  if (gap.crossing || gap.distance < gap_floor(s, d))
+    return Rejection{fmt::format("vesicles {} and {} {}", gap.first, gap.second,
+                                 gap.crossing ? "would cross" : fmt::format("would come within {:.2g}", gap.distance))};
   d.step = before.step + 1;
-  d.dt_before = dt;
-  d.history = true;
   record.step = double(d.step);
   record.dt = dt;
   record.time = d.time;
+  record.gap = gap.distance;
+  record.iterations = advance->iterations;
+  record.residual = advance->residual;
   return step;
 }
 
-State evaluate(const Setting& s, const Dynamics& d) try {
-  const auto x = positions(d);
-  const Suspension suspension = freeze(s, d, x);
-  const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity);
-  SuspensionSolve result = solve(s, suspension, 0, r, motions(d), frames(d));
-  State state{d.step, d.time, {}};
-  for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
-    const VesicleDynamics& v = d.vesicles[k];
-    const Membrane& m = suspension.membranes[k];
-    Motion& motion = result.motions[k];
-    if (is_sphere({v.area, v.volume})) {  // only tensions of zero mean are determined
-      const Matrix sigma = m.bases.field.synthesize(motion.tension).values;
-      motion.tension.values(0, 0) -= integrate(m.geometry, sigma.col(0)) / m.geometry.dA.sum() * std::sqrt(four_pi);
+Attempt<State> evaluate(const Setting& s, const Dynamics& d) {
+  return within_domain([&]() -> Attempt<State> {
+    const auto x = positions(d);
+    const Suspension suspension = freeze(s, d, x);
+    const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity);
+    Attempt<SuspensionSolve> result = solve(s, suspension, 0, r, motions(d), frames(d));
+    if (!result) return result.rejection();
+    State state{d.step, d.time, {}};
+    for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
+      const VesicleDynamics& v = d.vesicles[k];
+      const Membrane& m = suspension.membranes[k];
+      Motion& motion = result->motions[k];
+      if (is_sphere({v.area, v.volume})) {  // only tensions of zero mean are determined
+        const Matrix sigma = m.bases.field.synthesize(motion.tension).values;
+        motion.tension.values(0, 0) -= integrate(m.geometry, sigma.col(0)) / m.geometry.dA.sum() * std::sqrt(four_pi);
+      }
+      VesicleState out{v.position, motion.velocity, motion.tension, v.labels, v.tracers, v.saved_position,
+                       v.saved_velocity, v.relabelled, v.labels_laid, v.labels_laid_time};
+      if (d.saves == 0) out.velocity_before = out.velocity;
+      state.vesicles.push_back(std::move(out));
     }
-    VesicleState out{v.position, motion.velocity, motion.tension, v.labels, v.tracers, v.saved_position,
-                     v.saved_velocity, v.relabelled, v.labels_laid, v.labels_laid_time};
-    if (d.saves == 0) out.velocity_before = out.velocity;
-    state.vesicles.push_back(std::move(out));
-  }
-  return state;
-} catch (const std::domain_error& error) {
-  throw StepFailure(error.what());
+    return state;
+  });
 }
 
-void begin_anew(const Setting& s, Dynamics& d) {
-  d.history = false;
+Attempt<Dynamics> begun_anew(const Setting& s, Dynamics d) {
   d.dt_limit = start_step(s, d);
   d.calm = 0;
-  for (VesicleDynamics& v : d.vesicles) start_anew(s, d.time, v);
-  expect(s, d, evaluate(s, d));
+  for (VesicleDynamics& v : d.vesicles) {
+    v.history = {};
+    start_anew(s, d.time, v);
+  }
+  const Attempt<State> now = evaluate(s, d);
+  if (!now) return now.rejection();
+  expect(s, d, *now);
+  return d;
 }
 
 void expect(const Setting& s, Dynamics& d, const State& state) {

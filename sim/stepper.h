@@ -14,18 +14,18 @@ Dynamics initial_dynamics(const Setting&);
 /// Longest step for a scene: time.step, and a twentieth of a period where a flow oscillates.
 double longest_step(const Scene&);
 
-/// One step of length dt, within which no flow is switched; throws StepFailure and leaves the input as it was.
+/// One step of length dt, within which no flow is switched.
 struct Step {
   Dynamics dynamics;
   StepRecord record;
 };
-Step take_step(const Setting&, const Dynamics&, double dt);
+Attempt<Step> take_step(const Setting&, const Dynamics&, double dt);
 
 /// Where a flow has just been switched: what the past says of the future is forgotten, and the next step starts as the first.
-void begin_anew(const Setting&, Dynamics&);
+Attempt<Dynamics> begun_anew(const Setting&, Dynamics);
 
 /// Velocity and tension that solve (3a)-(3b) at the present positions, and all else that is saved.
-State evaluate(const Setting&, const Dynamics&);
+Attempt<State> evaluate(const Setting&, const Dynamics&);
 /// Takes velocity, tension and frames of a state of the present for what the next step starts from and expects.
 void expect(const Setting&, Dynamics&, const State&);
 /// To be called with a state that has been saved: it becomes the earlier end of the next interpolation.

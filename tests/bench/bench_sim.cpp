@@ -105,10 +105,10 @@ void step(benchmark::State& state, double contrast, const char* reparametrizatio
   Scene scene = test::shear_scene(prolate(p, contrast), 0.1, 1e9);
   scene.numerics.reparametrization = reparametrization;
   const Setting s = make_setting(scene, plans);
-  Dynamics d = take_step(s, initial_dynamics(s), 0.1).dynamics;  // makes the plans
+  Dynamics d = take_step(s, initial_dynamics(s), 0.1).value().dynamics;  // makes the plans
   double iterations = 0, relabelled = 0;
   for (auto _ : state) {
-    Step next = take_step(s, d, 0.1);
+    Step next = take_step(s, d, 0.1).value();
     iterations += next.record.iterations;
     relabelled += next.record.vesicles[0].relabelled;
     d = std::move(next.dynamics);
@@ -125,7 +125,7 @@ void evaluation(benchmark::State& state) {
   const Scene scene = test::shear_scene(prolate(p, 10), 0.1, 1e9);
   const Setting s = make_setting(scene, plans);
   const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 2);
-  for (auto _ : state) benchmark::DoNotOptimize(evaluate(s, d));
+  for (auto _ : state) benchmark::DoNotOptimize(evaluate(s, d).value());
 }
 
 /// The kernel alone, single and double layer: sources and targets of one vesicle at p = 8, all in the first cache.
@@ -186,7 +186,7 @@ void suspension_step(benchmark::State& state) {
   const Setting s = make_setting(scene, plans);
   const Dynamics d = initial_dynamics(s);
   int iterations = 0;
-  for (auto _ : state) iterations = take_step(s, d, 0.1).record.iterations;
+  for (auto _ : state) iterations = take_step(s, d, 0.1).value().record.iterations;
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
   state.counters["iterations"] = iterations;

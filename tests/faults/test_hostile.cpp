@@ -249,10 +249,14 @@ TEST_CASE("a resume record whose checksum fits is read as strictly as a state", 
         const sim::Dynamics read = sim::deserialised(numbers, reader.layout());
         ++accepted;
         CHECK(sim::serialised(read) == numbers);
-        for (const sim::VesicleDynamics& v : read.vesicles)
-          for (const sim::Coefficients* c : {&v.position, &v.displacement, &v.motion.velocity, &v.motion.tension, &v.labels,
-                                             &v.saved_position, &v.saved_velocity})
-            CHECK(c->values.rows() == sim::coefficient_count(c->order));
+        for (const sim::VesicleDynamics& v : read.vesicles) {
+          sim::visit(v, []<class Member>(sim::Part, const Member& member) {
+            if constexpr (std::is_same_v<Member, sim::Coefficients>)
+              CHECK(member.values.rows() == sim::coefficient_count(member.order));
+          });
+          for (const sim::PastLevel& level : v.history.levels)
+            CHECK(level.position.values.rows() == sim::coefficient_count(level.position.order));
+        }
       } catch (const std::runtime_error&) {
       }
     }
@@ -278,9 +282,9 @@ TEST_CASE("a forged resume record ends --resume with one sentence, and the file 
   const sim::Dynamics whole = sim::deserialised(reader.resume_payload(), layout);
   using Change = void (*)(sim::Dynamics&);
   const Change changes[] = {
-      [](sim::Dynamics& d) { d.vesicles[0].displacement.order = 1'000'000; },
+      [](sim::Dynamics& d) { d.vesicles[0].history.levels.at(0).position.order = 1'000'000; },
       [](sim::Dynamics& d) { d.vesicles[0].position.order = 1'000'000; },
-      [](sim::Dynamics& d) { d.vesicles[0].displacement = {1, sim::Matrix::Zero(4, 3)}; },
+      [](sim::Dynamics& d) { d.vesicles[0].history.levels.at(0).position = {1, sim::Matrix::Zero(4, 3)}; },
       [](sim::Dynamics& d) { d.vesicles[0].upsampling = 1000; },
       [](sim::Dynamics& d) { d.vesicles[0].position.values(0, 0) = std::numeric_limits<double>::quiet_NaN(); },
       [](sim::Dynamics& d) { d.vesicles[0].tracers.resize(0, 3); },

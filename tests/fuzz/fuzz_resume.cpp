@@ -39,8 +39,8 @@ sim::Setting& setting() {
 const std::vector<double>& whole() {
   static const std::vector<double> numbers = [] {
     sim::Dynamics d = sim::initial_dynamics(setting());
-    sim::mark_saved(d, sim::evaluate(setting(), d));
-    return sim::serialised(sim::take_step(setting(), d, scene().time.step).dynamics);
+    sim::mark_saved(d, sim::evaluate(setting(), d).value());
+    return sim::serialised(sim::take_step(setting(), d, scene().time.step).value().dynamics);
   }();
   return numbers;
 }
@@ -91,11 +91,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     const std::vector<double> again = sim::serialised(d);
     if (again.size() != numbers.size() || !std::equal(again.begin(), again.end(), numbers.begin()))
       fuzz::broken("an accepted record is written as it was");
-    for (const sim::VesicleDynamics& v : d.vesicles)
-      for (const sim::Coefficients* c : {&v.position, &v.displacement, &v.motion.velocity, &v.motion.tension, &v.labels,
-                                         &v.saved_position, &v.saved_velocity})
-        if (c->values.rows() != sim::coefficient_count(c->order)) fuzz::broken("an accepted record is of its orders");
-    if (d.vesicles.front().position.order == order) fuzz::accepted([&] { sim::take_step(setting(), d, scene().time.step); });
+    const auto fits = [](const sim::Coefficients& c) {
+      if (c.values.rows() != sim::coefficient_count(c.order)) fuzz::broken("an accepted record is of its orders");
+    };
+    for (const sim::VesicleDynamics& v : d.vesicles) {
+      sim::visit(v, [&]<class Member>(sim::Part, const Member& member) {
+        if constexpr (std::is_same_v<Member, sim::Coefficients>) fits(member);
+      });
+      for (const sim::PastLevel& level : v.history.levels) fits(level.position);
+    }
+    if (d.vesicles.front().position.order == order) sim::take_step(setting(), d, scene().time.step);
   });
   return 0;
 }

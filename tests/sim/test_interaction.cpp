@@ -199,7 +199,7 @@ TEST_CASE("two sinking spheres far apart follow the method of reflections with a
       scene.vesicles.push_back(v);
     }
     const Setting s = make_setting(scene, plans);
-    const State state = evaluate(s, initial_dynamics(s));
+    const State state = evaluate(s, initial_dynamics(s)).value();
     const double u = -state.vesicles[0].velocity.values(0, 2) / std::sqrt(4 * pi);  // mean over the sphere
     const double a = 1 / r;
     const double theory = along[2] == 0 ? 1 + 0.75 * a + 0.5 * a * a * a : 1 + 1.5 * a - a * a * a;
@@ -264,7 +264,7 @@ TEST_CASE("with the block preconditioner the coupled solve takes single digits o
   scene.numerics.preconditioner = "block";
   scene.numerics.gmres_tolerance = 1e-8;
   const Setting s = make_setting(scene, plans);
-  CHECK(take_step(s, initial_dynamics(s), 0.1).record.iterations < 10);
+  CHECK(take_step(s, initial_dynamics(s), 0.1).value().record.iterations < 10);
 }
 
 TEST_CASE("gaps are measured between the surfaces, not between grid points") {

@@ -98,9 +98,9 @@ TEST_CASE("the two ends of an interpolation are given in one parametrisation") {
   Scene scene = twist_scene("always");
   const Setting s = make_setting(scene, plans);
   Dynamics d = initial_dynamics(s);
-  mark_saved(d, evaluate(s, d));
+  mark_saved(d, evaluate(s, d).value());
   d = test::advanced(s, d, 0.1, 5);
-  const State state = evaluate(s, d);
+  const State state = evaluate(s, d).value();
   const VesicleState& v = state.vesicles[0];
   REQUIRE(v.relabelled > 0);
   // The same material point at the earlier time: x_before(s) must be where its label started, on the first surface.
@@ -126,7 +126,7 @@ TEST_CASE("labels are material: over a tank-treading period they stay with point
   Scene scene = test::shear_scene(test::vesicle("prolate", 0.85, 12), 0.1, 20);
   const Setting setting = make_setting(scene, plans);
   Dynamics d = initial_dynamics(setting);
-  mark_saved(d, evaluate(setting, d));
+  mark_saved(d, evaluate(setting, d).value());
   const Matrix dots = tracer_directions();
   Matrix carried = sample_points(d.vesicles[0].position, dots), near = dots;  // points in space, and parameters to start from
   double worst = 0, turned = 0;
@@ -137,7 +137,7 @@ TEST_CASE("labels are material: over a tank-treading period they stay with point
     // At this order it is seldom due; here it is done every unit of time.
     scene.numerics.reparametrization = d.step % 10 == 0 ? "always" : "off";
     d = test::advanced(setting, d, 0.1, 2);
-    const State state = evaluate(setting, d);
+    const State state = evaluate(setting, d).value();
     mark_saved(d, state);
     const VesicleState& b = state.vesicles[0];
     const double h = d.time - start;

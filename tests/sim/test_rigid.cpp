@@ -41,7 +41,7 @@ End end_of(const Scene& scene, double dt, int steps) {
   Plans plans;
   const Setting s = make_setting(scene, plans);
   const Dynamics d = test::advanced(s, initial_dynamics(s), dt, steps);
-  const State state = evaluate(s, d);
+  const State state = evaluate(s, d).value();
   return {measure(plans, state.vesicles[0], d.vesicles[0].area, d.vesicles[0].volume), state};
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("spheres turn rigidly with half the shear rate, wherever they are") {
   CHECK((arm - rigid_body(start.vesicles[0].position).arm.values * turn.transpose()).norm() < 2e-4);
   CHECK(rigid_body(d.vesicles[0].position).centre[0] == Approx(height).margin(1e-8));
   CHECK(scene_warnings(s, d).empty());  // its spectrum is rounding
-  const State state = evaluate(s, d);
+  const State state = evaluate(s, d).value();
   // A sphere that cannot stretch is a rigid one: its surface bears the traction 5 E.n, and div (sigma P) along it gives
   // sigma = const - (5/2) n.E.n, E_xz = 1/2, whatever lambda.
   const Basis& basis = plans.basis(6, 8);
@@ -177,8 +177,8 @@ TEST_CASE("nearly round vesicles deform within their excess area without a faile
     Plans plans;
     const Setting s = make_setting(scene, plans);
     Dynamics d = initial_dynamics(s);
-    while (d.time < 0.5) d = take_step(s, d, std::min(d.dt_limit, 0.1)).dynamics;
-    const VesicleMeasures m = measure(plans, evaluate(s, d).vesicles[0], d.vesicles[0].area, d.vesicles[0].volume);
+    while (d.time < 0.5) d = take_step(s, d, std::min(d.dt_limit, 0.1)).value().dynamics;
+    const VesicleMeasures m = measure(plans, evaluate(s, d).value().vesicles[0], d.vesicles[0].area, d.vesicles[0].volume);
     CHECK(std::abs(m.axes[0] - 1) < 1.5 * std::sqrt(excess) + 1e-4);
     CHECK(std::abs(m.volume_error) < 1e-12);
     CHECK(std::abs(m.area_error) < 1e-8);
@@ -197,7 +197,7 @@ TEST_CASE("two sinking spheres fall side by side, round and faster than one") {
   Plans plans;
   const Setting s = make_setting(scene, plans);
   const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 5);
-  const State state = evaluate(s, d);
+  const State state = evaluate(s, d).value();
   for (std::size_t k = 0; k < 2; ++k) {
     const VesicleMeasures m = measure(plans, state.vesicles[k], d.vesicles[k].area, d.vesicles[k].volume);
     // One rigid sphere: 2/9. Two, d between the centres, falling abreast: 1 + 3/(4 d) + 1/(2 d^3) by the method of reflections,
@@ -214,7 +214,7 @@ TEST_CASE("the fluid inside of a vesicle that a stream carries moves with the st
   scene.flows = {stream({3, 1, 0}), rotation({0, 0, 2})};
   Plans plans;
   const Setting s = make_setting(scene, plans);
-  const State state = evaluate(s, initial_dynamics(s));
+  const State state = evaluate(s, initial_dynamics(s)).value();
   const FlowField field = flow_field(plans, scene, state);
   Matrix points(3, 3);
   points << 0.1, 0.2, 0, 1.2, 0.1, 0.1, 0, 3, 0;  // two inside, one outside

@@ -178,7 +178,7 @@ TEST_CASE("the velocity agrees with an independent path: the change of shape ove
   scene.numerics.correction = false;
   const Setting s = make_setting(scene, plans);
   const Dynamics d0 = initial_dynamics(s), d1 = test::advanced(s, d0, 1e-3, 1);
-  const Matrix u = evaluate(s, d0).vesicles[0].velocity.values;
+  const Matrix u = evaluate(s, d0).value().vesicles[0].velocity.values;
   const Matrix slope = (d1.vesicles[0].position.values - d0.vesicles[0].position.values) / 1e-3;
   CHECK((u - slope).norm() < 5e-3 * u.norm());  // first-order difference
 }
@@ -233,7 +233,7 @@ TEST_CASE("the correction keeps area and volume to 1e-9 through many steps") {
   const Setting s = make_setting(scene, plans);
   Dynamics d = initial_dynamics(s);
   for (int k = 0; k < 20; ++k) {
-    const Step step = take_step(s, d, 0.2);
+    const Step step = take_step(s, d, 0.2).value();
     CHECK(std::abs(step.record.vesicles[0].area_error) < 1e-9);
     CHECK(std::abs(step.record.vesicles[0].volume_error) < 1e-9);
     d = step.dynamics;
@@ -247,7 +247,7 @@ TEST_CASE("an impossible step fails with a sentence and leaves its input as it w
   const Setting s = make_setting(scene, plans);
   const Dynamics d = initial_dynamics(s);
   const std::vector<double> before = serialised(d);
-  CHECK_THROWS_AS(take_step(s, d, 1), StepFailure);
+  CHECK_FALSE(take_step(s, d, 1));
   CHECK(serialised(d) == before);
 }
 
@@ -330,9 +330,10 @@ TEST_CASE("a membrane under tension takes long steps at every order, which it do
     scene.numerics.implicit_tension = implicit;
     const Setting s = make_setting(scene, plans);
     Dynamics d = initial_dynamics(s);
-    try {
-      while (d.time < 5) d = take_step(s, d, 0.42).dynamics;
-    } catch (const StepFailure&) {
+    while (d.time < 5) {
+      const Attempt<Step> step = take_step(s, d, 0.42);
+      if (!step) break;
+      d = step->dynamics;
     }
     return d.time;
   };

@@ -1,0 +1,39 @@
+// What may not succeed: a value, or the reason why there is none. For what is expected to happen now and then, such as a time
+// step that is too long; mistakes of the caller and damaged files are exceptions.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace sim {
+
+/// One sentence without a full stop.
+struct Rejection {
+  std::string reason;
+};
+
+template <class T>
+class Attempt {
+ public:
+  Attempt(T value) : result_(std::move(value)) {}
+  Attempt(Rejection rejection) : result_(std::move(rejection)) {}
+
+  explicit operator bool() const { return std::holds_alternative<T>(result_); }
+  const T& operator*() const { return std::get<T>(result_); }
+  T& operator*() { return std::get<T>(result_); }
+  const T* operator->() const { return &std::get<T>(result_); }
+  T* operator->() { return &std::get<T>(result_); }
+  const Rejection& rejection() const { return std::get<Rejection>(result_); }
+  /// The value where there must be one; throws std::runtime_error with the reason otherwise.
+  T value() && {
+    if (!*this) throw std::runtime_error(rejection().reason);
+    return std::move(std::get<T>(result_));
+  }
+
+ private:
+  std::variant<T, Rejection> result_;
+};
+
+}  // namespace sim

@@ -1,0 +1,174 @@
+// The state of a vesicle and its past: whoever changes the grid, the shape or the file must take all of it along.
+#include "sim/simulate.h"
+#include "../support/temporary_folder.h"
+#include "surfaces.h"
+#include "tests/support/catch.h"
+
+using namespace sim;
+
+namespace {
+
+/// s' -> R s': grid points move along the membrane as a rigid turn of the parameter sphere, which every degree carries exactly.
+Relabelling parameter_turn(int order, const Eigen::Matrix3d& turn) {
+  Relabelling r;
+  r.map = fresh_labels(order);
+  r.map.values = r.map.values * turn.transpose();
+  return r;
+}
+
+Scene pair_scene(const std::string& scheme) {
+  Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 8, 4), 0.1, 1, scheme);
+  scene.vesicles.push_back(test::vesicle("prolate", 0.95, 8, 2));
+  scene.vesicles[0].center = {0, 0, 1.1};
+  scene.vesicles[1].center = {0.4, 0, -1.1};
+  scene.numerics.reparametrization = "off";
+  return scene;
+}
+
+std::vector<std::string> schemes() {
+  std::vector<std::string> names;
+  for (const auto& row : scheme_catalogue()) names.emplace_back(row.name);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("a turn of the parameters between two steps moves the grid points and nothing else, in every scheme") {
+  const std::string scheme = GENERATE_COPY(from_range(schemes()));
+  INFO(scheme);
+  Plans plans;
+  const Scene scene = pair_scene(scheme);
+  const Setting s = make_setting(scene, plans);
+  const Dynamics before = test::advanced(s, initial_dynamics(s), 0.1, 3);
+  Dynamics turned = before;
+  const Relabelling r = parameter_turn(8, Eigen::AngleAxisd(0.8, Vec3(1, 2, -0.5).normalized()).toRotationMatrix());
+  carry(plans, r, turned.vesicles[0]);
+  const Dynamics after = take_step(s, before, 0.08).value().dynamics, other = take_step(s, turned, 0.08).value().dynamics;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const VesicleDynamics &a = after.vesicles[k], &b = other.vesicles[k];
+    const double moved = (a.position.values - before.vesicles[k].position.values).norm();
+    const auto apart = [&](const Coefficients& x, const Coefficients& y) {
+      return (k == 0 ? pulled_back(plans, r, x).values - y.values : Matrix(x.values - y.values)).norm();
+    };
+    // Operators are right to some 1e-4 of the motion at this order, and their error depends on where the grid lies.
+    CHECK(apart(a.position, b.position) < 2e-3 * moved);
+    CHECK(apart(a.labels, b.labels) < 1e-12);
+    CHECK(apart(a.motion.velocity, b.motion.velocity) < 2e-3 * a.motion.velocity.values.norm());
+    REQUIRE(a.history.levels.size() == b.history.levels.size());
+    for (std::size_t l = 0; l < a.history.levels.size(); ++l)
+      CHECK(apart(a.history.levels[l].position, b.history.levels[l].position) < 2e-3 * moved);
+  }
+  // Dots keep their places in space.
+  const Coefficients &x = before.vesicles[0].position, &y = turned.vesicles[0].position;
+  CHECK((sample_points(x, before.vesicles[0].tracers) - sample_points(y, turned.vesicles[0].tracers)).norm() < 1e-9);
+}
+
+TEST_CASE("every field of a vesicle is carried by a relabelling, and nothing else is touched") {
+  Plans plans;
+  const Scene scene = pair_scene("bdf2");
+  const Setting s = make_setting(scene, plans);
+  Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 2);
+  const VesicleDynamics before = d.vesicles[0];
+  const Relabelling r = parameter_turn(8, Eigen::AngleAxisd(1.1, Vec3::UnitY()).toRotationMatrix());
+  carry(plans, r, d.vesicles[0]);
+  std::vector<Coefficients> was, is;
+  const auto collect = [](std::vector<Coefficients>& all) {
+    return [&all]<class Member>(Part, const Member& member) {
+      if constexpr (std::is_same_v<Member, Coefficients>) all.push_back(member);
+      if constexpr (std::is_same_v<Member, History>)
+        for (const PastLevel& level : member.levels) all.push_back(level.position);
+    };
+  };
+  visit(before, collect(was));
+  visit(d.vesicles[0], collect(is));
+  REQUIRE(was.size() == is.size());
+  REQUIRE(was.size() == 7);  // position, one past position, velocity, tension, labels, position and velocity of the saved state
+  const Matrix parameters = tracer_directions();
+  const Matrix at = mapped(r, parameters);
+  for (std::size_t k = 0; k < was.size(); ++k) {
+    INFO("field " << k);
+    CHECK((sample_points(is[k], parameters) - sample_points(was[k], at)).norm() < 1e-11 * (1 + was[k].values.norm()));
+  }
+  CHECK(d.vesicles[0].frame.motion.rotation == before.frame.motion.rotation);
+  CHECK(d.vesicles[0].energy == before.energy);
+}
+
+TEST_CASE("past positions move along with the present, seen from where the steps since have carried them") {
+  History h;
+  const auto frame = [](double a) {
+    Frame f;
+    f.motion = {Vec3(a, 0.3, -a), Vec3(0.2, a, 0.1), Vec3(0.1, -0.2, a)};
+    f.drift(0, 2) = 1 + a;
+    return f;
+  };
+  h.levels.push_back({test::smooth_field(6, 6, 3, 1), frame(0.1), frame(0.4), 0.3});
+  h.levels.push_back({test::smooth_field(6, 6, 3, 2), frame(0.2), frame(-0.7), 0.2});
+  History moved = h;
+  const Coefficients shift = test::smooth_field(6, 6, 3, 3);
+  move_along(moved, shift);
+  const auto seen = [](const History& history, std::size_t k) {
+    Coefficients x = history.levels[k].position;
+    for (std::size_t j = k + 1; j-- > 0;) x = carried(history.levels[j].carrier, history.levels[j].dt, x);
+    return x.values;
+  };
+  for (const std::size_t k : {0U, 1U}) CHECK((seen(moved, k) - seen(h, k) - shift.values).norm() < 1e-13);
+}
+
+TEST_CASE("a history holds the latest levels, and no more than a scheme asks for") {
+  History h;
+  for (int k = 1; k <= 4; ++k) h = pushed(h, {test::constant_field(1, Vec3(k, 0, 0)), {}, {}, double(k)}, 3);
+  REQUIRE(h.levels.size() == 3);
+  for (int k = 0; k < 3; ++k) CHECK(h.levels[k].dt == 4 - k);
+  CHECK(pushed(h, h.levels[0], 0).levels.empty());
+}
+
+TEST_CASE("a scheme leaves a history of as many levels as it says") {
+  for (const auto& row : scheme_catalogue()) {
+    INFO(row.name);
+    Plans plans;
+    const Scene scene = pair_scene(std::string(row.name));
+    const Setting s = make_setting(scene, plans);
+    const Dynamics d = test::advanced(s, initial_dynamics(s), 0.05, row.function.past_levels + 2);
+    for (const VesicleDynamics& v : d.vesicles) CHECK(int(v.history.levels.size()) == row.function.past_levels);
+    CHECK(serialised(d).size() == resume_numbers(d, row.function.past_levels));
+  }
+}
+
+TEST_CASE("every scheme estimates the error of its step, and the estimate falls as the error does") {
+  const std::string scheme = GENERATE_COPY(from_range(schemes()));
+  INFO(scheme);
+  Plans plans;
+  Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 6, 3), 0.1, 1);
+  scene.numerics.correction = false;
+  scene.numerics.reparametrization = "off";
+  scene.numerics.upsampling = 3;
+  const Setting fine = make_setting(scene, plans);
+  Scene coarse_scene = scene;
+  coarse_scene.time.scheme = scheme;
+  const Setting coarse = make_setting(coarse_scene, plans);
+  const double start = 0.8;  // the shape is then on its way
+  const auto estimate_and_error = [&](double dt) {
+    constexpr int parts = 40;
+    const Dynamics before = test::advanced(fine, initial_dynamics(fine), (start - dt) / parts, parts);
+    Dynamics now = test::advanced(fine, before, dt / parts, parts);
+    const Dynamics end = test::advanced(fine, now, dt / parts, parts);
+    const State state = evaluate(fine, now).value();
+    VesicleDynamics& v = now.vesicles[0];
+    v.motion = {state.vesicles[0].velocity, state.vesicles[0].tension};
+    v.history = {};
+    if (scheme_of(coarse_scene).past_levels > 0)
+      v.history.levels.push_back({before.vesicles[0].position, before.vesicles[0].frame, {}, dt});
+    const Advance a = scheme_of(coarse_scene).advance({coarse, now, dt, coarse_scene.flows}).value();
+    const double error =
+        (a.vesicles[0].position.values - end.vesicles[0].position.values).norm() / std::sqrt(now.vesicles[0].area);
+    return std::pair(a.vesicles[0].error, error);
+  };
+  const auto [estimate, error] = estimate_and_error(0.1);
+  const auto [half_estimate, half_error] = estimate_and_error(0.05);
+  INFO(estimate << " for " << error << ", " << half_estimate << " for " << half_error);
+  const double order = scheme == "bdf2" ? 3 : 2;
+  // To leading order the two are equal; the rest is of the next power of a step that is no small one.
+  CHECK(half_estimate / half_error == Approx(1).margin(0.35));
+  CHECK(std::log2(estimate / half_estimate) == Approx(order).margin(0.4));
+  CHECK(std::log2(error / half_error) == Approx(order).margin(0.4));
+}
