@@ -46,7 +46,7 @@ inline constexpr Command commands[] = {
     {"compare", "pictures against expected ones, a pair of files or of folders: status 0 same, 1 different, 2 neither",
      "EXPECTED", "ACTUAL", false, "thresholds ignore json junit html diff update quiet", compare},
     {"reproduce", "recomputes a table or figure of the method's paper; without ITEM, tells which", "ITEM", "", false,
-     "to-report quiet gl quick full", reproduce},
+     "to-report quiet gl quick full force-file", reproduce},
     {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, themes, quantities, parameters", "KIND", "", false, "markdown",
      list},
 };

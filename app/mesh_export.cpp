@@ -48,7 +48,9 @@ class Sampler {
     Sampled result{surface.position, sim::Matrix(plan_.vertices(), 12)};
     sim::Matrix label = at(v.labels);
     label.rowwise().normalize();
-    result.fields << surface.normal, at(v.velocity), at(v.tension), at(mean_curvature(v.position)), label,
+    // Evaluated first: what throws between the columns leaves the initializer unfinished, which Eigen asserts against.
+    const sim::Matrix velocity = at(v.velocity), tension = at(v.tension), curvature = at(mean_curvature(v.position));
+    result.fields << surface.normal, velocity, tension, curvature, label,
         sim::Vector::Constant(plan_.vertices(), static_cast<double>(number));
     return result;
   }

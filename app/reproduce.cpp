@@ -56,22 +56,34 @@ int reproduce(const Options& options) {
   const std::filesystem::path folder = options.output.empty() ? "reproduce" : options.output;
   Options here = options;
   here.output = folder;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
+  ResultFiles results({}, options.force);
+  const sim::FileWriter write = results.writer_inside();
+  const auto asked = [&](const Reproduction& item) { return options.word == "all" || options.word == item.name; };
+  for (const Reproduction& item : reproductions)  // before hours of work
+    if (asked(item))
+      for (const char* extension : {".md", ".csv", ".png", ".svg", ".pdf"})
+        results.require_inside(folder / (std::string(item.name) + extension));
   for (const Reproduction& item : reproductions) {
-    if (options.word != "all" && options.word != item.name) continue;
+    if (!asked(item)) continue;
     const std::string name(item.name);
     Progress progress(name, options.quiet);
     try {
-      const Report report = item.function({options.quick, options.full, here, progress});
+      const Report report = item.function({options.quick, options.full, here, results, progress});
       progress.clear();
       const std::string command =
           fmt::format("tanktread reproduce {}{}{}", name, options.quick ? " --quick" : "", options.full ? " --full" : "");
-      const std::vector<std::filesystem::path> files = write_report(report, folder, name, command);
+      const std::vector<std::filesystem::path> files = write_report(report, folder, name, command, write);
+      results.settle();
       if (options.quiet) continue;
       fmt::print("{}\n", plain_text(report));
       for (const std::filesystem::path& file : files) fmt::print("{}\n", file.string());
       fmt::print("\n");
     } catch (const Interrupted& end) {
       progress.clear();
+      results.settle();
       tell(fmt::format("interrupted in {}; none of its tables and figures is written{}", name,
                        end.simulated.empty() ? "" : fmt::format(", the simulation is in '{}' as far as it went", end.simulated.string())));
       return interrupted_status;

@@ -1,6 +1,5 @@
 // Figures 4 and 6: whole simulations, whose scenes and trajectories are left beside the figures.
 #include "figures.h"
-#include "output.h"
 #include "reproduce_items.h"
 #include "scene_file.h"
 #include "scene_text.h"
@@ -26,12 +25,17 @@ SimulationReport simulate_scene(const Settings& settings, const std::string& nam
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
-  write_whole_file(folder / (name + ".toml"), write_scene(settings));
+  const fs::path scene = folder / (name + ".toml"), trajectory = folder / (name + ".h5");
+  // A trajectory is an earlier one of ours where our scene stands beside it.
+  if (fs::exists(trajectory) && !effort.options.force && !OwnedFiles(folder).listed(scene.filename().string()))
+    throw std::runtime_error(fmt::format("'{}' exists and was not made by this command; give another -o, or --force to replace it",
+                                         trajectory.string()));
+  effort.files.write(scene, write_scene(settings));
   Options options = effort.options;
   options.steps.reset();
   effort.progress.clear();
-  const SimulationReport report = simulate_new(settings, folder / (name + ".h5"), options);
-  if (report.interrupted) throw Interrupted{folder / (name + ".h5")};
+  const SimulationReport report = simulate_new(settings, trajectory, options);
+  if (report.interrupted) throw Interrupted{trajectory};
   return report;
 }
 

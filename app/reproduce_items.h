@@ -3,6 +3,7 @@
 
 #include "interrupt.h"
 #include "options.h"
+#include "owned_files.h"
 #include "progress.h"
 #include "reproduce_report.h"
 
@@ -15,6 +16,7 @@ struct Effort {
   bool quick = false;  ///< small orders and short times: a smoke test
   bool full = false;   ///< also the orders that take hours
   const Options& options;
+  ResultFiles& files;  ///< what it writes, the trajectories apart
   Progress& progress;
 };
 

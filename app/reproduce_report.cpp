@@ -1,6 +1,5 @@
 #include "reproduce_report.h"
 
-#include "output.h"
 #include "version.h"
 
 #include "render/figure.h"
@@ -121,25 +120,22 @@ std::string markdown_text(const Report& report, const std::string& item, const s
 }
 
 std::vector<fs::path> write_report(const Report& report, const fs::path& folder, const std::string& item,
-                                   const std::string& command) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
+                                   const std::string& command, const sim::FileWriter& write) {
   std::vector<fs::path> files;
   if (report.figure) {
     std::string tables;  // a page that shows the picture beside other numbers is found out
     for (const TextTable& table : report.tables) tables += markdown_text(table);
     files = render::write_figure(*report.figure, folder / item,
-                                 {{"Title", report.title}, {"Software", "tanktread " + version()}, {"tanktread:tables", tables}});
+                                 {{"Title", report.title}, {"Software", "tanktread " + version()}, {"tanktread:tables", tables}}, write);
   }
   for (std::size_t k = 0; k < report.tables.size(); ++k) {
     const bool first = k == 0 && !report.figure;
     const fs::path path = folder / (first ? fmt::format("{}.csv", item) : fmt::format("{}-{}.csv", item, k + 1));
-    write_whole_file(path, csv_text(report.tables[k]));
+    write(path, csv_text(report.tables[k]));
     files.push_back(path);
   }
   files.push_back(folder / (item + ".md"));
-  write_whole_file(files.back(), markdown_text(report, item, command));
+  write(files.back(), markdown_text(report, item, command));
   return files;
 }
 

@@ -36,7 +36,7 @@ std::string plain_text(const Report&);
 std::string markdown_text(const Report&, const std::string& item, const std::string& command);
 /// Writes ITEM.md, the figure's files, and ITEM.csv, ITEM-2.csv... of the tables that the figure's CSV does not replace.
 std::vector<std::filesystem::path> write_report(const Report&, const std::filesystem::path& folder, const std::string& item,
-                                                const std::string& command);
+                                                const std::string& command, const sim::FileWriter& write);
 
 /// "8.1e-6": two significant digits, as in the paper; "0" for zero, "-" for not a number.
 std::string scientific(double value, int digits = 2);

@@ -1,6 +1,7 @@
 #include "assets.h"
 
-#include <fstream>
+#include "sim/input_file.h"
+
 #include <sstream>
 #include <stdexcept>
 
@@ -18,9 +19,10 @@ std::string shader_text(std::string_view name, const std::filesystem::path& fold
     return {bytes.begin(), bytes.end()};
   }
   const std::filesystem::path path = folder / name;
-  std::ifstream file(path, std::ios::binary);
+  std::string why = "it is empty";
+  std::ifstream file = sim::open_input(path, why);
   std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw std::runtime_error(path.string() + ": cannot be read");
+  if (!file || !(text << file.rdbuf())) throw std::runtime_error("cannot read '" + path.string() + "': " + why);
   return text.str();
 }
 

@@ -18,13 +18,14 @@ namespace {
 struct Bench {
   support::TemporaryFolder folder;
   app::Options options;
+  app::ResultFiles files{{}, false};
   app::Progress progress{"test", true};
   Bench() {
     options.output = folder.path();
     options.quiet = true;
     options.quick = true;
   }
-  app::Effort effort() { return {true, false, options, progress}; }
+  app::Effort effort() { return {true, false, options, files, progress}; }
 };
 
 double leading_number(const std::string& cell) { return std::stod(cell); }
@@ -61,6 +62,33 @@ TEST_CASE("an unknown item is refused with the nearest known one", "[reproduce]"
   CHECK_THAT(none.out, Contains("table2") && Contains("fig6"));
 }
 
+TEST_CASE("a reproduction replaces its own files and nobody else's", "[reproduce]") {
+  const support::TemporaryFolder folder;
+  const fs::path out = folder / "r";
+  const auto reproduce = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{TANKTREAD_PROGRAM, "reproduce", "fig3", "--quick", "-q", "-o", out.string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return support::run(folder, words);
+  };
+  fs::create_directories(out);
+  support::write_file(out / "fig3.csv", "mine");
+  const support::Outcome refused = reproduce({});
+  CHECK(refused.status == 1);
+  CHECK_THAT(refused.err, Contains("fig3.csv") && Contains("--force"));
+  CHECK(support::read_file(out / "fig3.csv") == "mine");
+  REQUIRE(reproduce({"--force"}).status == 0);
+  const std::string table = support::read_file(out / "fig3.csv");
+  CHECK(table != "mine");
+  CHECK(reproduce({}).status == 0);
+  CHECK(support::read_file(out / "fig3.csv") == table);
+  // A trajectory of somebody else, which no list can name.
+  support::write_file(out / "fig6.h5", "mine");
+  const support::Outcome other = support::run(folder, {TANKTREAD_PROGRAM, "reproduce", "fig6", "--quick", "-q", "-o", out.string()});
+  CHECK(other.status == 1);
+  CHECK_THAT(other.err, Contains("fig6.h5"));
+  CHECK(support::read_file(out / "fig6.h5") == "mine");
+}
+
 TEST_CASE("an interrupted reproduction says what it leaves", "[reproduce]") {
   const support::TemporaryFolder folder;
   const std::string out = (folder / "r").string();
@@ -74,7 +102,7 @@ TEST_CASE("an interrupted reproduction says what it leaves", "[reproduce]") {
                                    "/fig6.h5' as far as it went"));
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(out)) names.insert(entry.path().filename().string());
-  CHECK(names == std::set<std::string>{"fig6.h5", "fig6.toml"});
+  CHECK(names == std::set<std::string>{".tanktread.files", "fig6.h5", "fig6.toml"});
 }
 
 TEST_CASE("the double layer converges as required", "[reproduce]") {
