@@ -16,7 +16,7 @@ struct Effort {
   bool quick = false;  ///< small orders and short times: a smoke test
   bool full = false;   ///< also the orders that take hours
   const Options& options;
-  ResultFiles& files;  ///< what it writes, the trajectories apart
+  ResultFiles& files;  ///< the files it writes, except trajectories
   Progress& progress;
 };
 
