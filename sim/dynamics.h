@@ -1,5 +1,5 @@
-// Everything that evolves in a simulation, and its exact form as a list of numbers, from which a run continues bit for
-// bit. A stepper maps Dynamics to Dynamics.
+// Everything that evolves in a simulation, and its exact serialisation, from which a run continues bit for bit. A
+// stepper maps Dynamics to Dynamics.
 #pragma once
 
 #include "labels.h"
@@ -12,13 +12,13 @@ namespace sim {
 
 struct VesicleDynamics {
   Coefficients position;        ///< x_n
-  Coefficients displacement;    ///< w = x_n, before its correction, less x_{n-1} as `carrier` carries it to t_n; in the present parametrisation
+  Coefficients displacement;    ///< w = uncorrected x_n - x_{n-1} carried to t_n by `carrier`; current parametrisation
   Motion motion;                ///< velocity and tension of the last solve: the next guess
-  Frame frame, frame_before;    ///< the motion of its shape at t_n and t_{n-1}
-  Frame carrier;                ///< the mean one of the frame of the last step
+  Frame frame, frame_before;    ///< rigid motion of the shape at t_n and t_{n-1}
+  Frame carrier;                ///< mean frame of the last step
   Coefficients labels;
   Matrix tracers;               ///< parameters of the tracer dots
-  Coefficients saved_position;  ///< of the last saved state, in the present parametrisation
+  Coefficients saved_position;  ///< of the last saved state, in the current parametrisation
   Coefficients saved_velocity;
   double area = 0, volume = 0;  ///< A0, V0: of the initial surface as represented
   double energy = 0;            ///< E/(8 pi kappa) of x_n
@@ -28,7 +28,7 @@ struct VesicleDynamics {
   double high_share = 0;        ///< high-degree share of x after the last relabelling, the least since
   std::int64_t relabelled = 0, labels_laid = 0;
   double labels_laid_time = 0;
-  bool warned = false;          ///< its order does not resolve it, which has been said: once a vesicle and run
+  bool warned = false;          ///< the warning that its order does not resolve it was given: once per vesicle and run
 };
 
 struct Dynamics {
@@ -36,15 +36,15 @@ struct Dynamics {
   std::int64_t saves = 0;       ///< saved states, the initial one included
   double time = 0;
   double dt_before = 0;         ///< length of the last step
-  double dt_limit = 0;          ///< longest step at present: halved by a failure, doubled after calm steps
+  double dt_limit = 0;          ///< current longest step: halved after a failure, doubled after calm steps
   std::int64_t calm = 0;        ///< accepted steps since dt_limit changed
-  bool history = false;         ///< displacement is meaningful
+  bool history = false;         ///< displacement is valid
   std::vector<VesicleDynamics> vesicles;
 };
 
 std::vector<double> serialised(const Dynamics&);
-/// The inverse; throws std::runtime_error unless the numbers are the whole state of a run that a trajectory of this layout
-/// holds: counts, orders and sizes fit together and within the layout, all numbers are finite, none is left over.
+/// The inverse; throws std::runtime_error unless the numbers are the complete state of a run for a trajectory of this
+/// layout: counts, orders and sizes are consistent and within the layout, all numbers are finite, none is left over.
 Dynamics deserialised(std::span<const double>, const TrajectoryLayout&);
 
 }  // namespace sim

@@ -14,27 +14,27 @@ Dynamics initial_dynamics(const Setting&);
 /// Longest step for a scene: time.step, and a twentieth of a period where a flow oscillates.
 double longest_step(const Scene&);
 
-/// One step of length dt, within which no flow is switched; throws StepFailure and leaves the input as it was.
+/// One step of length dt, within which no flow is switched; throws StepFailure and leaves its input unchanged.
 struct Step {
   Dynamics dynamics;
   StepRecord record;
 };
 Step take_step(const Setting&, const Dynamics&, double dt);
 
-/// Where a flow has just been switched: what the past says of the future is forgotten, and the next step starts as the first.
+/// After a flow has been switched: the history is discarded, and the next step starts like the first.
 void begin_anew(const Setting&, Dynamics&);
 
-/// Velocity and tension that solve (3a)-(3b) at the present positions, and all else that is saved.
+/// Velocity and tension that solve (3a)-(3b) at the current positions, and everything else that is saved.
 State evaluate(const Setting&, const Dynamics&);
-/// Takes velocity, tension and frames of a state of the present for what the next step starts from and expects.
+/// Sets the velocity, tension and frames with which the next step starts to those of a current state.
 void expect(const Setting&, Dynamics&, const State&);
-/// To be called with a state that has been saved: it becomes the earlier end of the next interpolation.
+/// Call it with a state that has been saved: it becomes the earlier end of the next interpolation.
 void mark_saved(Dynamics&, const State&);
 
-/// A sentence that vesicle k is not resolved by its order.
+/// The warning that vesicle k is not resolved by its order.
 std::string resolution_warning(const Setting&, const Dynamics&, std::size_t k);
-/// All that is to be said of a scene before its first step: vesicles that are not resolved, flows that move nothing or faster
-/// than the step.
+/// All warnings about a scene before its first step: unresolved vesicles, flows that move nothing or vary faster than
+/// the step.
 std::vector<std::string> scene_warnings(const Setting&, const Dynamics&);
 
 }  // namespace sim
