@@ -1,4 +1,4 @@
-// All catalogues of the program under one roof: what `tanktread list` prints, what the scene reader accepts as a word.
+// All catalogues of the program: what `tanktread list` prints, and the words that the scene reader accepts.
 #pragma once
 
 #include "sim/catalogue.h"

@@ -1,4 +1,4 @@
-// Other programs, started without a shell. They do not outlive this process.
+// Child processes, started without a shell. They do not outlive this process.
 #pragma once
 
 #include <string>
@@ -9,18 +9,18 @@
 namespace app {
 
 struct ChildProgram {
-  std::string file;                      ///< a path, or a name to be looked for along PATH
-  std::vector<std::string> words;        ///< from the program's own name on
+  std::string file;                      ///< a path, or a name to look up in PATH
+  std::vector<std::string> words;        ///< arguments, starting with the program's name
   std::vector<std::string> environment;  ///< NAME=VALUE; empty: that of this process
   int input = -1;                        ///< a descriptor that becomes its standard input; -1: that of this process
-  bool takes_ctrl_c = true;              ///< false: what is typed on the terminal is for us alone
-  int last_signal;                       ///< what it gets when this process dies
+  bool takes_ctrl_c = true;              ///< false: Ctrl-C on the terminal reaches only this process
+  int last_signal;                       ///< signal it receives when this process dies
 };
 
-/// Starts it. Throws std::system_error with errno's value when that fails; then there is no child.
+/// Starts it. Throws std::system_error with errno's value on failure; then there is no child.
 pid_t start_child(ChildProgram);
 
-/// Waits for its end; the status is as waitpid() gives it.
+/// Waits for its end and returns the status of waitpid().
 int wait_for_child(pid_t);
 
 }  // namespace app

@@ -1,4 +1,4 @@
-// The command line: words become Options, and the command they name is called.
+// The command line: parses the arguments into Options and calls the command.
 #pragma once
 
 namespace app {

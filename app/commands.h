@@ -1,4 +1,4 @@
-// The commands, a row each: what the command line offers, what runs, what `tanktread --help` and the README say.
+// The commands, one row each: what the command line offers, what runs, what `tanktread --help` and the README say.
 #pragma once
 
 #include "options.h"
@@ -24,8 +24,8 @@ std::vector<std::string_view> reproduction_names();  ///< the items of `reproduc
 
 struct Command {
   std::string_view name, meaning;
-  std::string_view word;     ///< what the first positional argument is called; empty: there is none but files
-  std::string_view files;    ///< what the files are called; empty: none
+  std::string_view word;     ///< name of the first positional argument; empty: only files
+  std::string_view files;    ///< name of the files; empty: none
   bool many_files;
   std::string_view options;  ///< the options it takes, separated by spaces
   CommandFunction function;

@@ -1,4 +1,4 @@
-// What a comparison of pictures tells: lines, JSON, JUnit XML, difference pictures, and a page to look at.
+// Reports of a comparison: lines, JSON, JUnit XML, difference pictures, and an HTML page.
 #pragma once
 
 #include "compare.h"
@@ -11,20 +11,21 @@ std::string report_line(const Comparison&);
 /// "5 pictures: 3 same, 1 different, 1 missing".
 std::string report_totals(const std::vector<Comparison>&);
 
-/// One JSON document; a limit that is infinite is null.
+/// One JSON document; infinite limits are null.
 std::string report_json(const CompareRequest&, const std::vector<Comparison>&);
-/// One test case a picture: different ones are failures, those that could not be compared are errors.
+/// One test case per picture: different ones are failures, those that could not be compared are errors.
 std::string report_junit(const std::vector<Comparison>&);
 
-// Files take the place of earlier ones of their kind only: what compare did not make, or has compared, is refused with a sentence.
+// Reports replace only earlier reports: files that compare did not write, or has compared, are refused with a
+// sentence.
 
-/// Throws std::runtime_error where difference pictures in that folder would be taken for compared ones.
+/// Throws std::runtime_error where difference pictures in that folder could be mistaken for compared ones.
 void check_difference_folder(const CompareRequest&, const std::filesystem::path& folder);
 /// Writes |expected - actual| x 16 of every different pair as FOLDER/NAME.png.
 void write_differences(const CompareRequest&, const std::vector<Comparison>&, const std::filesystem::path& folder);
 void write_junit(const CompareRequest&, const std::vector<Comparison>&, const std::filesystem::path& file);
-/// Writes FOLDER/index.html, which holds its pictures: expected, actual, difference x 16, side by side, blinking or under a
-/// slider, worst first. Equal pictures are named only. Beyond 64 MiB of pictures the rest is named only, too.
+/// Writes FOLDER/index.html, with embedded pictures: expected, actual, difference x 16, side by side, blinking or
+/// under a slider, worst first. Equal pictures are only named, and so are those beyond 64 MiB of pictures.
 void write_page(const CompareRequest&, const std::vector<Comparison>&, const std::filesystem::path& folder);
 
 }  // namespace app

@@ -11,8 +11,8 @@ struct CsvColumn {
 };
 std::vector<CsvColumn> csv_columns();
 
-/// Header row and one row per vesicle and saved state from number `first` to `end` - 1; numbers with the digits that give the same
-/// number again.
+/// Header row and one row per vesicle and saved state from number `first` to `end` - 1; numbers with enough digits to
+/// be read back exactly.
 std::string csv_text(const sim::TrajectoryReader&, std::int64_t first, std::int64_t end);
 
 }  // namespace app

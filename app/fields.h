@@ -1,5 +1,5 @@
-// What the colours of a movie mean: the range of its field over the whole trajectory, labels in the units of a paper, and
-// the colours of whole vesicles.
+// The colours of a movie: range of its field over the whole trajectory, labels in dimensionless units, and colours of
+// whole vesicles.
 #pragma once
 
 #include "settings.h"
@@ -10,18 +10,19 @@
 
 namespace app {
 
-/// One and the same for all frames of a movie.
+/// The same for all frames of a movie.
 struct Painting {
   std::vector<render::Colour> bodies;    ///< one a vesicle
   std::optional<render::Legend> legend;  ///< of the field, or of the quantity that colours whole vesicles
-  const sim::FieldRow* field = nullptr;  ///< set when the style paints one
+  const sim::FieldRow* field = nullptr;  ///< set when the style shows a field
   double length = 1;                     ///< R0
   double rate = 0;                       ///< of the flow at the size of a vesicle; 0: none
 };
 
-/// Passes over `states` of the trajectory when the style paints a field. A range that is not given holds all but the lowest
-/// and the highest 0.5 % of the membranes' area, widened to round numbers; a field with both signs has zero in the middle.
-/// The bar of any range tells whether values lie beyond it: of the movie, or of the `still` when only that is drawn. Throws std::invalid_argument for a field that this scene does not have.
+/// Passes over `states` of the trajectory when the style shows a field. An automatic range covers all but the lowest
+/// and the highest 0.5 % of the membranes' area, widened to round numbers; a field with both signs has zero in the
+/// middle. The colour bar shows whether values lie outside the range: of the movie, or of the `still` when only that
+/// is drawn. Throws std::invalid_argument for a field that this scene does not have.
 Painting plan_painting(const sim::TrajectoryReader&, const std::vector<std::int64_t>& states, const Settings&,
                        double area_radius, const sim::State* still = nullptr);
 

@@ -1,5 +1,5 @@
-// Figures of trajectories: gathers the states, measures, pictures or flows that a kind of figure asks for and writes its
-// four files.
+// Figures of trajectories: collects the states, measures, pictures or flows that a kind of figure needs, and writes
+// its four files.
 #pragma once
 
 #include "options.h"
@@ -16,17 +16,17 @@ namespace app {
 struct FigureSource {
   const sim::TrajectoryReader& trajectory;
   const Settings& settings;
-  std::string name;  ///< in the legend when there are several; else empty
+  std::string name;  ///< in the legend when there are several sources; else empty
   std::string file = {};  ///< of the trajectory, for messages
 };
 
-/// Curves of several trajectories share a figure of this kind; pictures of states get one each.
+/// Whether curves of several trajectories share a figure of this kind; otherwise each gets its own figure.
 bool takes_several(std::string_view kind);
 
-/// Kinds that show states take the first source only.
+/// Kinds that show states use only the first source.
 render::Figure make_figure(const std::vector<FigureSource>&, const render::FigureParameters&, const Options&);
 
-/// stem.png, .svg, .pdf and .csv, put in their places by `write`; returns their paths.
+/// stem.png, .svg, .pdf and .csv, written by `write`; returns their paths.
 std::vector<std::filesystem::path> draw_figure(const std::vector<FigureSource>&, const render::FigureParameters&,
                                                const std::filesystem::path& stem, const sim::FileWriter& write, const Options&);
 

@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM ask for an end: the step or frame under way is finished and saved. A second Ctrl-C ends at once.
+// Ctrl-C and SIGTERM request a stop: the current step or frame is finished and saved. A second Ctrl-C ends at once.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,14 @@ namespace app {
 /// Exit status after an interruption.
 inline constexpr int interrupted_status = 130;
 
-/// From here on SIGINT and SIGTERM set a flag, and a closed pipe or a file that may not grow is a write error
-/// rather than the end.
+/// From now on SIGINT and SIGTERM set a flag, and a closed pipe or a file size limit is a write error instead of a
+/// fatal signal.
 void watch_signals();
 bool interrupted();
 
-/// What takes long and leaves nothing half done ends by this: nothing of it is kept.
+/// Thrown to abort long computations without partial results: nothing is kept.
 struct Interrupted {
-  std::filesystem::path simulated;  ///< a trajectory as far as it went; empty: none
+  std::filesystem::path simulated;  ///< the trajectory so far; empty: none
 };
 /// Throws Interrupted.
 void stop_if_interrupted();

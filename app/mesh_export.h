@@ -12,8 +12,8 @@ namespace app {
 
 struct MeshExport {
   std::filesystem::path folder;
-  std::int64_t first = 0, end = 0;  ///< numbers of the states: first, ..., end - 1
-  int latitudes = 64;  ///< triangles a vesicle: 4 x latitudes x (latitudes - 1)
+  std::int64_t first = 0, end = 0;  ///< indices of the states: first, ..., end - 1
+  int latitudes = 64;  ///< triangles per vesicle: 4 x latitudes x (latitudes - 1)
 };
 
 /// Fields of every point, in the order of the files.
@@ -30,18 +30,18 @@ inline constexpr MeshField mesh_fields[] = {
     {"vesicle", "number of the vesicle, from 0", 1},
 };
 
-/// Hears (states written, of states) before each; false stops.
+/// Called with (states written, total) before each state; false stops.
 using ExportProgress = std::function<bool(std::int64_t, std::int64_t)>;
 
-/// Names in the folder.
+/// File names in the folder.
 std::string vtk_name(std::int64_t state);
 inline constexpr const char vtk_series[] = "series.pvd";
 std::string ply_name(std::size_t vesicle, std::int64_t state);
 
-/// FOLDER/state-000000.vtp, ... with all vesicles, and FOLDER/series.pvd with the times. The series names whole files only;
-/// it is written last. Returns the number of states written.
+/// FOLDER/state-000000.vtp, ... with all vesicles, and FOLDER/series.pvd with the times. The series refers only to
+/// complete files; it is written last. Returns the number of states written.
 std::int64_t export_vtk(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
-/// FOLDER/vesicle-0-000000.ply, ...: one file a vesicle and state, binary.
+/// FOLDER/vesicle-0-000000.ply, ...: one file per vesicle and state, binary.
 std::int64_t export_ply(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
 
 }  // namespace app

@@ -1,13 +1,14 @@
-// Sentences to standard error.
+// Messages to standard error.
 #pragma once
 
 #include <string_view>
 
 namespace app {
 
-/// One line, "tanktread: SENTENCE", printable whatever names and texts of files are in it. A standard error that is closed or full is no reason to stop what is under way.
+/// One line, "tanktread: SENTENCE", printable whatever file names and texts it contains. A closed or full standard
+/// error does not stop the program.
 void tell(std::string_view sentence) noexcept;
-/// As it is, for a line that is drawn over.
+/// Unchanged, for a line that will be overwritten.
 void tell_raw(std::string_view text) noexcept;
 
 }  // namespace app

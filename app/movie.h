@@ -1,4 +1,4 @@
-// A movie: frames go as raw samples through a pipe into an ffmpeg child process, which writes the file.
+// A movie: raw frames are piped into an ffmpeg child process, which writes the file.
 #pragma once
 
 #include "movie_formats.h"
@@ -15,11 +15,11 @@ namespace app {
 
 class MovieEncoder {
  public:
-  /// Starts ffmpeg on a draft in the folder; finish() gives it its name. Throws FfmpegMissing when there is none.
+  /// Starts ffmpeg on a draft in the folder; finish() renames it. Throws FfmpegMissing when ffmpeg is not installed.
   MovieEncoder(const MovieFormat&, OwnedFiles& folder, int width, int height, double frame_rate);
   MovieEncoder(const MovieEncoder&) = delete;
   MovieEncoder& operator=(const MovieEncoder&) = delete;
-  /// Without finish(): ffmpeg is stopped and nothing is left.
+  /// Without finish(): stops ffmpeg and leaves nothing behind.
   ~MovieEncoder();
 
   void add(const render::Image& rgb);

@@ -1,4 +1,4 @@
-// Movie files that ffmpeg writes for us, a row each.
+// Movie formats written by ffmpeg, one row each.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace app {
 struct MovieFormat {
   std::string_view name;     ///< also the extension
   std::string_view meaning;
-  bool even_size;            ///< the encoder refuses odd widths and heights
-  double fastest;            ///< frames per second that players follow; more are left out
+  bool even_size;            ///< the encoder requires even widths and heights
+  double fastest;            ///< most frames per second that players support; others are dropped
   std::string_view muxer;
   std::vector<std::string> encoder;  ///< arguments of ffmpeg after the input
 };

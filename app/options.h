@@ -1,4 +1,4 @@
-// What a command line says, one struct for all commands; each command reads what concerns it.
+// The options of the command line, one struct for all commands; each command reads what it needs.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace app {
 struct Options {
   std::string command;
   std::string word;                            ///< `figure NAME`, `list KIND`
-  std::vector<std::filesystem::path> inputs;   ///< scene, trajectories, or a file to look at
+  std::vector<std::filesystem::path> inputs;   ///< scene, trajectories, or a file to inspect
   std::filesystem::path output;                ///< -o
   std::vector<std::string> set;                ///< --set, in order
   std::optional<double> time;                  ///< --time: a still
   std::optional<std::int64_t> steps;           ///< --steps
-  int jobs = 0;                                ///< -j; 0: as the scene says
+  int jobs = 0;                                ///< -j; 0: as in the scene
   std::string gl = "auto";
   std::filesystem::path shader_dir;
   int shard = 0, shards = 1;                   ///< --shard 0/4: frames 0, 4, 8, ...

@@ -1,4 +1,4 @@
-// Output files and folders: whole or absent, and never another scene's.
+// Output files and folders: complete or absent, and never those of another scene.
 #pragma once
 
 #include "owned_files.h"
@@ -19,27 +19,29 @@ std::string base64(std::string_view bytes);
 
 inline constexpr const char poster_name[] = "poster.png";
 
-/// Files of a figure in an output folder.
+/// Names of the files of a figure in an output folder.
 std::vector<std::string> figure_names(const render::FigureParameters&);
 
-/// What an output folder of `run` already holds.
+/// What an output folder of `run` already contains.
 enum class FolderState {
-  fresh,      ///< new, or given up by --force
-  same,       ///< this very scene, pictures included
-  same_physics  ///< this simulation with other pictures, or to another end
+  fresh,      ///< new, or discarded by --force
+  same,       ///< exactly this scene, pictures included
+  same_physics  ///< this simulation with other pictures or another end time
 };
 
-/// What a movie was made of, in a hidden file beside its frames: the frames alone do not tell how fast they were shown.
+/// Record of what a movie was made from, a hidden file beside its frames: the frames alone do not tell the frame
+/// rate.
 std::string record_of_movie(const std::string& movie);
-/// A movie of an earlier version, which kept no list: its record says how long it is.
+/// Adopts a movie of an earlier version, which kept no list; its record contains its length.
 void adopt_movie(OwnedFiles&, const std::string& movie);
-/// Throws, before anything is changed, where a name that frames, movie and poster need belongs to somebody else.
+/// Throws, before anything is changed, when a name needed for frames, movie or poster is taken by a file of the user.
 void require_pictures(const OwnedFiles&, const Settings&);
 
-/// What is there, and the refusals of `run`: another scene without `force`, and whatever was not made by this program. Changes
-/// nothing on the disk.
+/// State of the folder; throws the refusals of `run`: another scene without `force`, and files not made by this
+/// program. Changes nothing on the disk.
 FolderState inspect_folder(OwnedFiles&, const Settings&, bool force);
-/// Leaves the resolved scene.toml in the folder, and removes what an earlier run of ours left that is not of this scene.
+/// Writes the resolved scene.toml to the folder, and removes results of earlier runs that do not belong to this
+/// scene.
 void claim_folder(OwnedFiles&, const Settings&, FolderState);
 
 }  // namespace app

@@ -9,10 +9,11 @@
 
 namespace app {
 
-/// The scene at any instant of a trajectory: cubic (Hermite) between saved states; before and after it the first and last.
+/// The state at any time of a trajectory: cubic Hermite interpolation between saved states; the first and last state
+/// outside.
 sim::State state_at(const sim::TrajectoryReader&, double time);
 
-/// One trajectory with its scene, whose pictures may have been changed.
+/// One trajectory with its scene, whose picture settings may have been changed.
 struct PictureSource {
   const sim::TrajectoryReader& trajectory;
   const Settings& settings;
@@ -24,13 +25,13 @@ struct ViewPanel {
   render::ViewParameters view;  ///< with the panel's own size and camera
   render::Framing framing;
   double arrow_speed = 0;
-  glm::dvec2 inset_centre{0};  ///< (x, z) of the inset; from what is followed, when the camera follows
-  glm::dvec2 inset_half{1};    ///< half of what it must hold
+  glm::dvec2 inset_centre{0};  ///< (x, z) of the inset; relative to what a following camera follows
+  glm::dvec2 inset_half{1};    ///< half of the extent it must contain
   render::Captions captions;  ///< without the time
   Painting painting;
   bool stamped = true;  ///< shows the time and notes
-  std::vector<double> laid;  ///< when material lines were laid anew on any vesicle
-  double notice = 0;         ///< how long before and after that a note says so, in time of the scene
+  std::vector<double> laid;  ///< times at which labels were reset on any vesicle
+  double notice = 0;         ///< how long before and after a reset a note is shown, in scene time
   TimeFormat time_format = {};
 };
 
@@ -38,14 +39,15 @@ struct Production {
   std::vector<ViewPanel> panels;  ///< row by row
   int columns = 1, rows = 1;
   int width = 0, height = 0;  ///< of the whole picture
-  std::string hash;           ///< of everything that a picture depends on besides its time
+  std::string hash;           ///< of everything that a picture depends on except its time
 };
 
-/// Passes over each trajectory once. Several sources stand side by side, the views of one source in a row of their own; size
-/// and style of the whole are those of the first. `still`: the time of the only picture that is drawn. Throws std::invalid_argument with one sentence when nothing could be seen.
+/// Passes over each trajectory once. Several sources are drawn side by side, with one row per source if there are
+/// several views; size and style of the whole are those of the first. `still`: the time of the only picture. Throws
+/// std::invalid_argument with one sentence when nothing would be visible.
 Production prepare_pictures(const std::vector<PictureSource>&, std::optional<double> still = {});
 
-/// What draws: one for all pictures.
+/// Renderer, mesh and plans, shared by all pictures.
 struct Studio {
   render::Renderer renderer;
   std::shared_ptr<const render::MeshPlan> mesh;

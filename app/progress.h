@@ -1,4 +1,4 @@
-// One line on a terminal that says how far a task is; nothing in a pipe.
+// A progress line on a terminal; nothing in a pipe.
 #pragma once
 
 #include <chrono>
@@ -9,15 +9,15 @@ namespace app {
 
 class Progress {
  public:
-  /// `what`: "simulating", "rendering". Silent when quiet or when standard error is no terminal.
+  /// `what`: "simulating", "rendering". Silent when quiet or when standard error is not a terminal.
   Progress(std::string what, bool quiet);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
-  /// share: done of all, 0..1; `detail`: "step 12, t = 1.2". Time left is estimated from this process's own work.
+  /// share: fraction done, 0..1; `detail`: "step 12, t = 1.2". Time left is estimated from this process's own work.
   void show(double share, std::string_view detail);
-  /// Wipes the line, so that something else can be printed.
+  /// Clears the line, so that something else can be printed.
   void clear();
 
  private:

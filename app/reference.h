@@ -1,4 +1,4 @@
-// docs/reference.md and its like: every parameter, kind and column, generated from where each is declared.
+// docs/reference.md and related lists: every parameter, kind and column, generated from its declaration.
 #pragma once
 
 #include <string>

@@ -11,12 +11,12 @@
 
 namespace app {
 
-/// How much is asked for.
+/// Requested effort.
 struct Effort {
-  bool quick = false;  ///< small orders and short times: does it run at all
-  bool full = false;   ///< the orders that take hours, too
+  bool quick = false;  ///< small orders and short times: a smoke test
+  bool full = false;   ///< also the orders that take hours
   const Options& options;
-  ResultFiles& files;  ///< what it writes, the trajectories apart
+  ResultFiles& files;  ///< the files it writes, except trajectories
   Progress& progress;
 };
 
@@ -31,9 +31,9 @@ Report reproduce_block_error(const Effort&);          // Figure 5
 Report reproduce_two_vesicles(const Effort&);         // Figure 6
 Report reproduce_tank_treading(const Effort&);        // other authors' angles and frequencies
 
-/// Orders of tables 4 and 5.
+/// Orders p of tables 4 and 5.
 std::vector<int> table_orders(const Effort&);
-inline constexpr double paper_step = 0.21;  ///< of its runs in shear, times the shear rate
+inline constexpr double paper_step = 0.21;  ///< time step of the paper's runs in shear, times the shear rate
 
 /// The four shapes of tables 2 and 3; the paper's are only pictured.
 struct NamedShape {
@@ -44,7 +44,7 @@ const std::vector<NamedShape>& reference_shapes();
 
 /// One prolate of reduced volume 0.85 and area 4 pi along x in the shear flow u = z e_x, kappa_b = 0.01.
 sim::Scene sheared_prolate(int order, double viscosity_contrast);
-/// How the reports call it.
+/// Its description in the reports.
 extern const char* const prolate_setting;
 /// Two of them with centres -+(1.2, 0, -0.5): scenes/two-vesicles.toml.
 sim::Scene sheared_pair(int order, double viscosity_contrast);

@@ -1,5 +1,5 @@
-// What one reproduced item of the paper consists of: the setting, tables with our numbers beside the paper's, findings, and
-// for a figure its drawing; and how it is printed and written.
+// The report on one reproduced item of the paper: setting, tables with our numbers beside the paper's, findings, and
+// for a figure its drawing; printing and writing.
 #pragma once
 
 #include "render/figure.h"
@@ -23,16 +23,16 @@ std::string csv_text(const TextTable&);
 
 struct Report {
   std::string title;
-  std::vector<std::string> setting;   ///< shapes and parameters: what one needs to repeat it
+  std::vector<std::string> setting;   ///< shapes and parameters needed to repeat it
   std::vector<TextTable> tables;
   std::vector<std::string> findings;
   std::optional<render::Figure> figure;
-  std::string picture_text;           ///< what the figure shows, under it
+  std::string picture_text;           ///< caption of the figure
 };
 
-/// For people: setting, tables, findings.
+/// For the terminal: setting, tables, findings.
 std::string plain_text(const Report&);
-/// ITEM.md; `command` makes it again.
+/// ITEM.md; `command` reproduces it.
 std::string markdown_text(const Report&, const std::string& item, const std::string& command);
 /// Writes ITEM.md, the figure's files, and ITEM.csv, ITEM-2.csv... of the tables that the figure's CSV does not replace.
 std::vector<std::filesystem::path> write_report(const Report&, const std::filesystem::path& folder, const std::string& item,

@@ -1,5 +1,5 @@
-// Reads and writes scene files (TOML). Everything that can be wrong with one is told in a sentence with file, line and
-// column, and the nearest word that would have been right.
+// Reads and writes scene files (TOML). Every error is reported in a sentence with file, line and column, and the
+// nearest valid word.
 #pragma once
 
 #include "settings.h"
@@ -8,18 +8,19 @@
 
 namespace app {
 
-/// What a scene is read for. Drawing needs neither the initial shapes nor the files they come from.
+/// Purpose of reading a scene. Drawing needs neither the initial shapes nor their files.
 enum class SceneUse { simulate, draw };
 
-/// Reads a scene file and lays `--set key=value` overrides over it. Errors are std::runtime_error.
+/// Reads a scene file and applies `--set key=value` overrides. Errors are std::runtime_error.
 Settings read_scene(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
-/// The same for text; `name` stands for the file in messages, file names in the scene are relative to `folder`.
+/// The same for text; `name` is the file name in messages, file names in the scene are relative to `folder`.
 Settings parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                      const std::vector<std::string>& overrides = {}, SceneUse use = SceneUse::simulate);
 
-/// Is a key read, given the words that select a kind in the same table (its `kind` or `shape`, and `time_factor`)?
+/// Whether a key is used, given the words that select a kind in the same table (its `kind` or `shape`, and
+/// `time_factor`).
 bool key_applies(std::string_view section, std::string_view key, std::string_view kind, std::string_view time_factor);
-/// For a key that is not: "a key of flow 'poiseuille', not of 'shear'".
+/// For an unused key: "a key of flow 'poiseuille', not of 'shear'".
 std::string key_belongs_to(std::string_view section, std::string_view key, std::string_view kind);
 
 }  // namespace app

@@ -5,8 +5,8 @@
 
 namespace app {
 
-/// Lays one override over the scene: `time.step=0.05`, `vesicle.order=12` (every vesicle), `vesicle.0.order=12`.
-/// The value is TOML; a bare word is taken as text.
+/// Applies one override to the scene: `time.step=0.05`, `vesicle.order=12` (every vesicle), `vesicle.0.order=12`. The
+/// value is TOML; a bare word is a string.
 void apply_override(toml::table& scene, const std::string& override_text);
 
 }  // namespace app

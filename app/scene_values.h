@@ -7,12 +7,13 @@
 
 namespace app {
 
-/// toml::parse for text that may be anything. What the parser cannot bear is refused first, as std::runtime_error: keys of
-/// more than 200 parts, one recursion each, and letters beyond ASCII outside of texts and comments. Other errors are
+/// toml::parse for untrusted text. Input that would crash the parser is refused first, as std::runtime_error: keys of
+/// more than 200 parts, one recursion each, and non-ASCII letters outside strings and comments. Other errors are
 /// toml::parse_error.
 toml::table parse_toml(std::string_view text, const std::string& name);
 
-/// A value that is not what its parameter allows, e.g. "'order' must be at least 2, at most 64, not 1"; else empty.
+/// Message for a value outside the range of its parameter, e.g. "'order' must be at least 2, at most 64, not 1"; else
+/// empty.
 std::string range_error(const sim::Parameter&, double value);
 /// The allowed range in words, e.g. "above 0, at most 1"; empty: any number.
 std::string range_text(const sim::Parameter&);
@@ -49,7 +50,7 @@ void read_value(const sim::Parameter& parameter, const toml::node& node, std::ve
   }
 }
 
-/// FNV-1a of bytes, 16 hexadecimal digits: tells that a file has changed, not who changed it.
+/// FNV-1a of bytes, 16 hexadecimal digits: detects that a file has changed, not tampering.
 std::string checksum(std::string_view bytes);
 
 }  // namespace app

@@ -25,10 +25,10 @@ void visit_sections(S& settings, V&& v) {
   v(sim::Section{"figure", "one figure a table", false}, settings.figures);
 }
 
-/// Of one run, one movie. More would take years.
+/// Limits for one run and one movie. More would take years.
 inline constexpr double most_steps = 1e9, most_frames = 1e7;
 
-/// The key whose word decides which other keys of a table are read, e.g. `kind` of [flow].
+/// The key whose value determines which other keys of a table are used, e.g. `kind` of [flow].
 struct Selector {
   std::string_view section, key, catalogue;
   std::string_view noun;  ///< in messages: flow 'shear'
@@ -37,7 +37,7 @@ inline constexpr std::array<Selector, 3> selectors{{{"flow", "kind", "flows", "f
                                                     {"vesicle", "shape", "shapes", "shape"},
                                                     {"placement", "kind", "placements", "placement"}}};
 
-/// Keys of a flow's time factor.
+/// Keys of the time factor of a flow.
 struct TimeFactorKey {
   std::string_view key, factor;
 };

@@ -1,5 +1,6 @@
-// The flow of a saved state in a plane, made ready to be drawn: streamlines and speeds. Between the membranes the velocity is
-// interpolated from nets of samples; beside a membrane, across which its slope jumps, every value is computed.
+// The flow of a saved state in a plane, prepared for drawing: streamlines and speeds. Away from the membranes the
+// velocity is interpolated from nets of samples; near a membrane, across which its gradient jumps, every value is
+// computed.
 #pragma once
 
 #include "render/figure.h"
@@ -13,8 +14,8 @@ struct FlowRequest {
   render::Range x, y;        ///< window in the plane, lengths of the scene
   sim::Vec3 frame_velocity = sim::Vec3::Zero();  ///< subtracted everywhere
   double spacing = 0.2;      ///< of the lines, length
-  double length = 1;         ///< area radius: with the scene it tells which speeds are rounding
-  bool with_speed = true;    ///< also speeds on a net, as a background
+  double length = 1;         ///< area radius: with the scene it determines which speeds are rounding errors
+  bool with_speed = true;    ///< also speeds on a net, for the background
 };
 
 /// Throws Interrupted at the first signal: fine spacings take minutes.
@@ -23,7 +24,7 @@ render::FlowPicture flow_picture(sim::Plans&, const sim::Scene&, const sim::Stat
 /// Mean of the velocities of the vesicles' centroids.
 sim::Vec3 frame_velocity(sim::Plans&, const sim::State&);
 
-/// The request of a figure: plane, window round the sections, frame. `length`: the area radius.
+/// The request for a figure: plane, window around the sections, frame. `length`: the area radius.
 FlowRequest flow_request(sim::Plans&, const sim::State&, const render::FigureParameters&, double length);
 
 }  // namespace app

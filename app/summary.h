@@ -1,4 +1,4 @@
-// A scene or a file in a few lines, for --dry-run and `tanktread info`.
+// Summaries of a scene or a file in a few lines, for --dry-run and `tanktread info`.
 #pragma once
 
 #include "settings.h"
@@ -8,7 +8,7 @@
 
 namespace app {
 
-/// Lines that begin with "# ", so that they can stand above the resolved scene.
+/// Lines that begin with "# ", so that they can precede the resolved scene.
 std::string scene_summary(const Settings&);
 std::string trajectory_summary(const std::filesystem::path&);
 std::string picture_summary(const std::filesystem::path&);

@@ -1,4 +1,4 @@
-// The scene that a trajectory carries with it.
+// The scene stored in a trajectory.
 #pragma once
 
 #include "settings.h"
@@ -9,7 +9,8 @@
 
 namespace app {
 
-/// With changes that `--set` makes to its pictures. Throws std::runtime_error when it is none, or not that of the states.
+/// With `--set` changes to its pictures applied. Throws std::runtime_error when it is not a scene, or does not match
+/// the states.
 Settings scene_in(const sim::TrajectoryReader&, const std::filesystem::path&, const std::vector<std::string>& changes = {});
 
 }  // namespace app

@@ -1,4 +1,4 @@
-// Which program this is: for --version, trajectories and pictures.
+// Version and build of the program, for --version, trajectories and pictures.
 #pragma once
 
 #include <string>

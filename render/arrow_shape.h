@@ -1,4 +1,4 @@
-// The arrow of the flow field, and the bead of a fluid at rest, as triangles.
+// The arrow of the flow field, and the bead that marks fluid at rest, as triangles.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,4 +1,4 @@
-// Files inside the program: the shaders and the font, embedded when it was built.
+// Files embedded in the program at build time: the shaders and the font.
 #pragma once
 
 #include <filesystem>
@@ -15,10 +15,10 @@ struct Asset {
 };
 const std::vector<Asset>& assets();
 
-/// Throws std::runtime_error when there is none of that name.
+/// Throws std::runtime_error when no asset has that name.
 std::span<const unsigned char> asset(std::string_view name);
 
-/// Text of a shader file: from `folder` when that is given (so shaders can be edited without building), else embedded.
+/// Text of a shader file: from `folder` if given (so that shaders can be edited without a build), otherwise embedded.
 /// Throws std::runtime_error with the path when the file cannot be read.
 std::string shader_text(std::string_view name, const std::filesystem::path& folder);
 

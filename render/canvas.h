@@ -1,4 +1,4 @@
-// A drawing in points that becomes PNG, SVG and PDF by one and the same function.
+// A drawing in points, rendered to PNG, SVG and PDF by the same function.
 #pragma once
 
 #include "image.h"
@@ -11,7 +11,7 @@
 
 namespace render {
 
-/// 72 points an inch; y grows downward.
+/// 72 points per inch; y points downward.
 struct Drawing {
   double width = 0, height = 0;
   std::function<void(cairo_t*, const Font&)> paint;
@@ -19,9 +19,9 @@ struct Drawing {
   double dots_per_inch = 300;  ///< of the PNG
 };
 
-/// Each throws std::runtime_error with path and reason.
-/// The same drawing gives the same bytes: no dates, no names of machines. The PNG says its dots per inch; the PDF carries the
-/// letters that it uses; the SVG names the font and leaves its texts above everything else.
+/// Each throws std::runtime_error with path and reason. The same drawing gives the same bytes: no dates or host
+/// names. The PNG records its dots per inch; the PDF embeds the glyphs it uses; the SVG names the font and draws its
+/// text above everything else.
 void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text = {},
                        const sim::FileWriter& write = sim::write_file);
 void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write = sim::write_file);

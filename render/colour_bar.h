@@ -1,4 +1,4 @@
-// The bar at the right edge of a picture that tells the values of its colours.
+// The colour bar at the right edge of a picture.
 #pragma once
 
 #include "picture_canvas.h"
@@ -6,10 +6,10 @@
 
 namespace render {
 
-/// Round numbers in [low, high], three to seven of them.
+/// Three to seven round numbers in [low, high].
 std::vector<double> bar_ticks(double low, double high);
 
-/// Where the bar of a picture stands: its colours from bottom to top, without the pointed ends. Pixels.
+/// Place of the bar in a picture: its colours from bottom to top, without the pointed ends. Pixels.
 struct BarPlace {
   double left, top, width, height;
 };

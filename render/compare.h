@@ -1,4 +1,4 @@
-// Two pictures side by side: how far they differ, and whether a rule lets that pass.
+// Comparison of two pictures: their difference, and whether it is within a rule.
 #pragma once
 
 #include "flip.h"
@@ -11,13 +11,13 @@
 
 namespace render {
 
-/// What may differ between two pictures that count as the same. Infinite: no limit.
+/// Tolerances for two pictures that count as the same. Infinite: no limit.
 struct CompareRule {
   double channel = 2;       ///< a pixel differs when one of its channels differs by more, 8-bit units
   double pixels = 10;       ///< so many pixels may differ in any picture
   double share = 2e-5;      ///< ... or this share of its pixels, whichever is more
   double largest = 48;      ///< no channel may differ by more, 8-bit units
-  double rmse = 0.15;       ///< root mean square over the colours, 8-bit units; alpha adds to it where it differs
+  double rmse = 0.15;       ///< root mean square over the colours, 8-bit units; alpha is added where it differs
   double flip_mean = std::numeric_limits<double>::infinity();  ///< mean of the FLIP map, 0..1
   double flip_max = std::numeric_limits<double>::infinity();   ///< its largest value
   double flip_spot = std::numeric_limits<double>::infinity();  ///< the same where the pictures differ in one spot only
@@ -51,30 +51,30 @@ struct ComparePreset {
 std::span<const ComparePreset> compare_presets();
 
 struct ImageDifference {
-  std::int64_t compared = 0;  ///< pixels that counted
+  std::int64_t compared = 0;  ///< pixels compared
   double maximum = 0;         ///< largest difference of a channel, in 8-bit units; a fraction where samples have 16 bits
   std::int64_t above = 0;     ///< pixels with a channel that differs by more than the rule's
   double rmse = 0;            ///< in 8-bit units
   int left = 0, top = 0, right = 0, bottom = 0;  ///< smallest box around the pixels above; right and bottom excluded
   std::optional<double> flip_mean, flip_max;     ///< when the rule asks for them
-  bool spot = false;                             ///< is that box not empty, and at most a 16th of what counted?
-  std::vector<std::string> declared;             ///< what the files say differently about equal samples, a phrase each
+  bool spot = false;                             ///< that box is not empty, and at most a 16th of the compared area
+  std::vector<std::string> declared;             ///< phrases: what the files declare differently about their samples
 };
 
-/// Measures what the rule needs. Red, green, blue count, and alpha when one of the pictures has it; samples of 16 bits count
-/// with all of them, but in FLIP. What the files declare of colours and animation is compared, too. Ignored pixels count
-/// nowhere. `look` is called now and then, and may throw to end all.
-/// Throws std::invalid_argument when sizes differ.
+/// Measures what the rule needs. Red, green and blue are compared, and alpha when one of the pictures has it; 16-bit
+/// samples in full, except by FLIP. The declared colour space and animation are compared too. Ignored pixels are
+/// excluded everywhere. `look` is called from time to time, and may throw to stop. Throws std::invalid_argument when
+/// sizes differ.
 ImageDifference difference(const PngFile& expected, const PngFile& actual, const CompareRule& = {}, const Ignored& = {},
                            const std::function<void()>& look = {});
-/// The same of pictures that are no files.
+/// The same for pictures in memory.
 ImageDifference difference(const Image& expected, const Image& actual, const CompareRule& = {}, const Ignored& = {});
 
-/// What the rule objects to, one phrase each; empty: the same picture.
+/// Violations of the rule, one phrase each; empty: the same picture.
 std::vector<std::string> objections(const ImageDifference&, const CompareRule& = {});
 inline bool same_picture(const ImageDifference& d, const CompareRule& rule = {}) { return objections(d, rule).empty(); }
 
-/// |a - b| x gain, saturated, opaque: what to look at when they differ. Ignored pixels are blue-grey.
+/// |a - b| x gain, saturated, opaque, for inspection. Ignored pixels are blue-grey.
 Image difference_image(const Image& a, const Image& b, int gain = 16, const Ignored& = {});
 
 }  // namespace render

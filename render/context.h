@@ -11,7 +11,7 @@
 
 namespace render {
 
-/// What `--gl` says.
+/// The choice made by `--gl`.
 struct GlChoice {
   std::string kind = "auto";  ///< a row of gl_choices()
   int device = -1;            ///< egl:N
@@ -31,18 +31,18 @@ struct GlInformation {
   std::string back_end;   ///< "OSMesa", "EGL device 0", "EGL surfaceless"
   std::string renderer;   ///< GL_RENDERER
   std::string version;    ///< GL_VERSION
-  bool software = false;  ///< draws on the processor: pictures are the same on every machine
+  bool software = false;  ///< software rasteriser: pictures are the same on every machine
 };
 
-/// Throws std::runtime_error with one sentence when so much address space is not to be had. Drivers do not survive that
-/// themselves: they crash, or tell on standard error what nobody understands.
+/// Throws std::runtime_error with one sentence when so much address space is not available. Drivers do not handle
+/// this: they crash or print cryptic messages on standard error.
 void require_memory(std::size_t bytes);
 
 /// A context and its functions. Current on the thread that opened it; make_current() before drawing when there are
 /// several.
 class GlContext {
  public:
-  /// Throws std::runtime_error: one sentence that names the Debian package when a library is missing.
+  /// Throws std::runtime_error: one sentence, with the Debian package when a library is missing.
   explicit GlContext(const GlChoice& choice = {});
   ~GlContext();
   GlContext(GlContext&&) noexcept;

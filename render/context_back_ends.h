@@ -5,7 +5,7 @@
 
 namespace render {
 
-/// A library or a device is not there: the next back end may be tried.
+/// A library or a device is missing: the next back end may be tried.
 struct GlUnavailable : std::exception {
   std::string sentence;
   explicit GlUnavailable(std::string s) : sentence(std::move(s)) {}
@@ -14,7 +14,7 @@ struct GlUnavailable : std::exception {
 
 /// File names to try, in this order.
 using LibraryNames = std::vector<const char*>;
-/// How EGL comes onto a Debian or Ubuntu; every release has these packages.
+/// How to install EGL on Debian or Ubuntu; every release has these packages.
 constexpr const char* egl_packages = "install the packages libegl1 and libgl1-mesa-dri (apt install libegl1 libgl1-mesa-dri)";
 
 inline const LibraryNames osmesa_libraries{"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"};
@@ -26,7 +26,7 @@ enum class EglDevices { any, one, software };
 /// device: index among the EGL devices for EglDevices::one.
 GlContext::BackEnd open_egl(EglDevices which, int device, const LibraryNames& names = egl_libraries);
 
-/// dlopen of the first of the names; nullptr when there is none. Never closed: drivers do not survive it.
+/// dlopen of the first of the names that exists; nullptr when none does. Never closed: drivers crash on that.
 void* open_library(const LibraryNames& names);
 
 }  // namespace render

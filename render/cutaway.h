@@ -1,4 +1,4 @@
-// What the style "cutaway" takes away of a vesicle, and the rim that is left.
+// The part of a vesicle removed by the style "cutaway", and the rim that remains.
 #pragma once
 
 #include "scene.h"

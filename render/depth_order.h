@@ -1,4 +1,4 @@
-// Which triangles are drawn, and in what order, as far as the eye decides it.
+// View-dependent choice and order of triangles.
 #pragma once
 
 #include "scene.h"
@@ -8,13 +8,13 @@
 
 namespace render {
 
-/// Vertex indices of all triangles of all bodies, farthest from the eye first; vertices of body k are counted on from
+/// Vertex indices of all triangles of all bodies, farthest from the eye first; vertices of body k are numbered after
 /// those of body k - 1. Ties are broken by index, so that the order is the same everywhere.
 std::vector<std::uint32_t> back_to_front(const std::vector<Body>& bodies, const Camera& camera);
 
-/// Vertex indices of the triangles at the rim of a body: back faces that the picture shows less than `reach` inside of the
-/// contour (in half heights of the picture at its target), some that lie deeper, and all that have a front and a back. Pushed
-/// outward by less than the reach, they leave no gap at the contour.
+/// Vertex indices of the triangles at the rim of a body: back faces that appear less than `reach` inside the contour
+/// (in half heights of the picture at its target), some farther inside, and all that are partly front and partly
+/// back. Pushed outward by less than the reach, they leave no gap at the contour.
 std::vector<std::uint32_t> rim_triangles(const Mesh& mesh, const Camera& camera, double reach);
 
 }  // namespace render

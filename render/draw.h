@@ -1,5 +1,4 @@
-// Draws a frame. draw_frame() reads like the list of its passes: ground, arrows or lines of the flow, bodies with
-// outlines, captions.
+// Draws a frame in passes: ground, arrows or streamlines, bodies with outlines, captions.
 #pragma once
 
 #include "context.h"
@@ -14,10 +13,10 @@
 namespace render {
 
 /// Everything that outlives a frame: context, compiled variants, buffers. One per thread at most; several contexts in
-/// several threads do not draw faster (software rasterisers share one lock), so use processes for that.
+/// several threads are not faster (software rasterisers share one lock), so use processes.
 class Renderer {
  public:
-  /// shader_dir: take shaders from there instead of the embedded ones. Throws as GlContext does.
+  /// shader_dir: read shaders from there instead of the embedded ones. Throws like GlContext.
   explicit Renderer(const GlChoice& choice = {}, std::filesystem::path shader_dir = {});
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -36,11 +35,11 @@ class Renderer {
   void draw_ghosts(const Frame&);
   void draw_cut_edges(const Frame&);
   void draw_flow_lines(const Frame&);
-  /// A strip along the points on the picture, `reach` samples to both sides, moved `nearer` to the eye.
+  /// A strip along the points in the picture, `reach` samples to both sides, moved towards the eye by `nearer`.
   void draw_ribbon(const Camera&, std::span<const glm::dvec3> points, bool closed, float reach, double nearer);
   void upload(const Body&, const Camera&);
   void draw_body(const Frame&, const Body&);
-  /// The core hides what lies behind; the edge is thirds of a sample that let it through.
+  /// The core hides what is behind it; the edge, two translucent hulls, fades out in thirds of a sample.
   enum class OutlinePart { core, edge };
   std::vector<std::uint32_t> rim_of(const Frame&, const Body&) const;
   void draw_outline(const Frame&, const Body&, const std::vector<std::uint32_t>& rim, OutlinePart);

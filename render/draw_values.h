@@ -1,4 +1,4 @@
-// Small values that all passes of a frame share.
+// Helpers shared by all passes of a frame.
 #pragma once
 
 #include "gpu.h"

@@ -1,4 +1,4 @@
-// The drawing functions behind the rows of the figure catalogue, and what they share.
+// The drawing functions of the figure catalogue, and their common helpers.
 #pragma once
 
 #include "figure.h"
@@ -15,7 +15,7 @@ Figure draw_plots(const FigureInput& input);
 
 /// a..z, then aa, ab, ...
 std::string letter(std::size_t k);
-/// Dark blue, green, orange: early (0) to late (1), distinct in grey as well.
+/// Dark blue, green, orange: early (0) to late (1), distinct in grey too.
 Colour colour_of_time(double t);
 
 }  // namespace render

@@ -1,5 +1,5 @@
-// Objects that live in an OpenGL context: programs, vertex arrays, the framebuffer. Each frees itself; all need the
-// context that made them to be current and alive.
+// OpenGL objects: programs, vertex arrays, the framebuffer. Each frees itself; the context that made them must be
+// current and alive.
 #pragma once
 
 #include "gl.h"
@@ -18,13 +18,13 @@ namespace render {
 /// A compiled pair of shaders.
 class Program {
  public:
-  /// Throws std::runtime_error with `name` and the compiler's words.
+  /// Throws std::runtime_error with `name` and the compiler's message.
   Program(const Gl& gl, std::string_view name, const std::string& vertex, const std::string& fragment);
   ~Program();
   Program(const Program&) = delete;
 
   void use() const;
-  // Uniforms of the program in use; names the shader does not have are ignored, since variants drop some.
+  // Uniforms of the program in use; names missing in the shader are ignored, since variants drop some.
   void set(const char* name, float v) const;
   void set(const char* name, int v) const;
   void set(const char* name, const glm::vec2& v) const;
@@ -37,7 +37,7 @@ class Program {
   GLuint id_ = 0;
 };
 
-/// Vertex array with float attributes in buffers of their own, filled anew for every body.
+/// Vertex array with one buffer per float attribute, refilled for every body.
 class VertexArray {
  public:
   explicit VertexArray(const Gl& gl);
@@ -45,7 +45,7 @@ class VertexArray {
   VertexArray(const VertexArray&) = delete;
 
   void bind() const;
-  /// Attribute `location` takes one element of `data` a vertex; divisor 1: one an instance.
+  /// Attribute `location` takes one element of `data` per vertex; divisor 1: one per instance.
   void attribute(GLuint location, std::span<const float> data, GLuint divisor = 0);
   void attribute(GLuint location, std::span<const glm::vec2> data, GLuint divisor = 0);
   void attribute(GLuint location, std::span<const glm::vec3> data, GLuint divisor = 0);
@@ -75,8 +75,7 @@ class Palette {
   GLuint id_ = 0;
 };
 
-/// RGBA8 + depth. The colours are sRGB-encoded by the shaders; a target that encodes by itself would differ between
-/// processors.
+/// RGBA8 + depth. The shaders encode sRGB; an sRGB target would give results that depend on the processor.
 class Framebuffer {
  public:
   /// Throws std::runtime_error when the driver cannot make one that large.

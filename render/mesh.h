@@ -20,9 +20,9 @@ class MeshPlan {
   explicit MeshPlan(int latitudes = 96, int longitudes = 192);
 
   int vertices() const { return (latitudes_ - 1) * longitudes_ + 2; }
-  /// Three vertices a triangle, counter-clockwise seen from outside.
+  /// Three vertices per triangle, counter-clockwise seen from outside.
   std::span<const std::uint32_t> indices() const { return indices_; }
-  /// Vertices grid first, latitude running fastest, then the poles theta = 0 and theta = pi.
+  /// Vertices: first the grid, latitude varying fastest, then the poles theta = 0 and theta = pi.
   const sim::Vector& theta() const { return theta_; }  ///< with both poles: latitudes + 1
   const sim::Vector& phi() const { return phi_; }
   /// The parameter s of every vertex, a unit vector.
@@ -37,7 +37,7 @@ class MeshPlan {
   std::vector<glm::vec3> parameters_;
 };
 
-/// One element a vertex in every array; scalar may be empty.
+/// One element per vertex in every array; scalar may be empty.
 struct Mesh {
   std::shared_ptr<const MeshPlan> plan;
   std::vector<glm::dvec3> position;  ///< in the scene
@@ -60,8 +60,8 @@ Mesh make_mesh(std::shared_ptr<const MeshPlan> plan, const sim::VesicleState& st
 /// For each vertex the indices of the two nearest tracers on its side of the membrane, -1 where there is none.
 std::vector<glm::vec2> nearest_tracers(const Mesh& mesh);
 
-/// Initial direction of tracer k: the axes +x -x +y -y +z -z, then the corners of the cube; only x + y + z > 0 is used
-/// here.
+/// Initial direction of tracer k: the axes +x -x +y -y +z -z, then the corners of the cube; only the sign of
+/// x + y + z is used here.
 bool tracer_is_bright(int k);
 
 }  // namespace render

@@ -1,4 +1,4 @@
-// What is written on a finished frame: time, parameters, title, scale bar, and what explains it.
+// Text and symbols on a finished frame: time, parameters, title, scale bar, annotations.
 #pragma once
 
 #include "image.h"
@@ -7,7 +7,7 @@
 
 namespace render {
 
-/// Draws the captions that the view asks for onto an RGB picture.
+/// Draws the captions requested by the view onto an RGB picture.
 void draw_captions(Image& image, const Font& font, const Frame& frame);
 
 }  // namespace render

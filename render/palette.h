@@ -1,4 +1,5 @@
-// Colours: of vesicles, of curves in figures, of everything drawn around them. sRGB, 0..1, safe for colour-blind eyes.
+// Colours: of vesicles, of curves in figures, of everything drawn around them. sRGB, 0..1, safe for colour-blind
+// viewers.
 #pragma once
 
 #include <array>
@@ -33,10 +34,10 @@ inline Colour body_colour(std::size_t vesicle) { return body_colours()[vesicle %
 /// A name of body_colours(), or "#rrggbb". Throws std::invalid_argument that names the nearest known name.
 Colour parse_colour(std::string_view text);
 
-/// Along stops at equal distances, from the first (0) to the last (1); beyond them the nearest.
+/// Interpolates between equidistant stops, from the first (0) to the last (1); clamped beyond them.
 Colour between(std::span<const Colour> stops, double share);
 
-/// Okabe and Ito's colours, for curves on white; yellow left out.
+/// Okabe and Ito's colours, for curves on white; without yellow.
 inline constexpr std::array<Colour, 7> curve_colours{{
     {0.000, 0.447, 0.698},
     {0.835, 0.369, 0.000},

@@ -9,7 +9,7 @@
 
 namespace render {
 
-/// Pixels; may reach beyond the picture.
+/// Pixels; may extend beyond the picture.
 struct Rectangle {
   int x, y, width, height;
 };

@@ -14,7 +14,7 @@ struct Range {
   double size() const { return high - low; }
 };
 
-/// Data window and place on the page (points; y grows downward there, upward in data).
+/// Data window and place on the page (points; y points downward there, upward in data).
 struct Panel {
   Range x, y;
   double left = 0, top = 0, width = 100, height = 100;
@@ -23,7 +23,7 @@ struct Panel {
   double page_y(double v) const { return top + height - (v - y.low) / y.size() * height; }
 };
 
-/// What everything is drawn with.
+/// Drawing context: Cairo, font and theme.
 struct Pen {
   cairo_t* cairo;
   const Font& font;
@@ -31,7 +31,7 @@ struct Pen {
 };
 void set_colour(const Pen& pen, const Colour& colour, double opacity = 1);
 
-/// Widths of texts before there is a page.
+/// Measures text widths before a page exists.
 class Ruler {
  public:
   Ruler();
@@ -48,14 +48,14 @@ enum class Scale { linear, degrees, logarithmic };
 
 /// About `wanted` round numbers inside the range.
 std::vector<double> tick_values(const Range& range, int wanted, Scale scale = Scale::linear);
-/// How they are written: number_texts(), or powers of ten.
+/// Their labels: number_texts(), or powers of ten.
 std::vector<std::string> tick_texts(const std::vector<double>& values, Scale scale = Scale::linear);
 
-/// `values` widened by `margin` of their span, to at least `least` and to what double precision can tell apart.
+/// `values` widened by `margin` of their span, to at least `least` and the resolution of double precision.
 Range range_of(const std::vector<double>& values, double margin = 0.06, double least = 0);
-/// A range of decades that holds the logarithms of the positive values.
+/// A range of decades that contains the logarithms of the positive values.
 Range decades(const std::vector<double>& values);
-/// Decimal logarithms; not a number where there is none.
+/// Decimal logarithms; NaN where undefined.
 std::vector<double> logarithms(const std::vector<double>& values);
 
 struct Axis {
@@ -77,7 +77,7 @@ struct Ticks {
 };
 Ticks ticks_of(const Ruler& ruler, const Theme& theme, const Axis& axis, const Range& range, double length, bool horizontal);
 
-/// Room that numbers and labels take outside the panel, pt.
+/// Space taken by numbers and labels outside the panel, pt.
 struct Margins {
   double left = 0, right = 0, top = 0, bottom = 0;
 };
@@ -85,7 +85,7 @@ Margins margins_of(const Ruler& ruler, const Theme& theme, const Axes& axes, con
 
 /// Faint grid; call before the curves.
 void draw_grid(const Pen& pen, const Panel& panel, const Axes& axes);
-/// Frame, inward ticks, numbers, labels; call after the curves. Numbers stand left of and below the panel.
+/// Frame, inward ticks, numbers, labels; call after the curves. Numbers are left of and below the panel.
 void draw_axes(const Pen& pen, const Panel& panel, const Axes& axes);
 /// "(a)  t = 5" above the panel's upper left corner.
 void draw_title(const Pen& pen, const Panel& panel, std::string_view text);

@@ -1,4 +1,4 @@
-// What stands in a panel: curves, markers, pictures, and the legend that names them.
+// Contents of a panel: curves, markers, pictures, and the legend.
 #pragma once
 
 #include "image.h"
@@ -25,7 +25,7 @@ enum class Marker { dot, square, diamond, triangle, ring };
 /// radius: in units of the theme's stroke. error: half length of a bar in y; empty: none.
 void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y, Marker marker,
                   const Colour& colour, double radius = 1.8, const std::vector<double>& error = {});
-/// An RGB picture in a rectangle of the page; smooth: enlarged without edges.
+/// An RGB picture in a rectangle of the page; smooth: interpolated when enlarged.
 void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height, bool smooth = true);
 
 /// One line of a legend.
@@ -39,9 +39,9 @@ enum class Corner { upper_right, lower_right, upper_left, lower_left };
 void draw_legend(const Pen& pen, const Panel& panel, const std::vector<LegendEntry>& entries, Corner corner);
 /// The same in one line whose right end is at (right, baseline).
 void draw_legend_line(const Pen& pen, double right, double baseline, const std::vector<LegendEntry>& entries);
-/// Size with the space round it, pt.
+/// Size including its margin, pt.
 Eigen::Vector2d legend_size(const Ruler& ruler, const Theme& theme, const std::vector<LegendEntry>& entries);
-/// A corner where a rectangle of that size meets none of the curves, if there is one.
+/// A corner where a rectangle of that size intersects no curve, if any.
 std::optional<Corner> empty_corner(const Panel& panel, const Eigen::Vector2d& size,
                                    const std::vector<std::pair<std::vector<double>, std::vector<double>>>& curves);
 

@@ -1,4 +1,4 @@
-// One frame as a value: everything that draw_frame() needs, and nothing it could look up elsewhere.
+// One frame as a value: everything that draw_frame() needs.
 #pragma once
 
 #include "camera.h"
@@ -11,9 +11,9 @@
 
 namespace render {
 
-/// What a plane takes away of a body, for the style "cutaway".
+/// The part of a body removed by a plane, for the style "cutaway".
 struct Cut {
-  glm::dvec3 normal{0, -1, 0};  ///< unit vector toward the side that is taken away
+  glm::dvec3 normal{0, -1, 0};  ///< unit vector toward the removed side
   glm::dvec3 point{0};          ///< of the plane
   std::vector<std::vector<glm::dvec3>> edges;  ///< closed curves, the first point is not repeated
 };
@@ -24,27 +24,27 @@ struct Body {
   std::optional<Cut> cut;
 };
 
-/// The bar that tells the values of a field, or of the colours of whole bodies.
+/// The colour bar of a field, or of a quantity that colours whole bodies.
 struct Legend {
   std::string label;            ///< as in Captions
   double low = 0, high = 1;     ///< values at the ends of the map
   ColourTable colours{};
-  bool below = false, above = false;  ///< values beyond an end occur; they have its colour
-  /// A field whose map is as light above its middle as below: view.sign_dots marks the lower half.
+  bool below = false, above = false;  ///< values beyond that end occur; they have its colour
+  /// A field whose map is symmetric in lightness about its middle: view.sign_dots marks the lower half.
   bool mirrored = false;
 };
 
-/// Background velocity at arrow_points(), sampled by whoever knows the flow. Where everything rests, a camera that follows
-/// shows beads at rest instead, or nothing would tell that it moves.
+/// Background velocity at arrow_points(), sampled by the caller. In a fluid at rest a following camera shows beads
+/// instead, to make its own motion visible.
 struct FlowArrows {
   sim::Matrix points;      ///< count x 3
   sim::Matrix velocities;  ///< count x 3
   double reference_speed =
-      0;  ///< drawn at full length; 0: the fastest of `velocities`. One value a movie keeps arrows steady.
+      0;  ///< drawn at full length; 0: the fastest of `velocities`. One value per movie keeps arrows steady.
   double shown = 1;  ///< 0: faded into the ground
 };
 
-/// Curves in space that show the flow, with places for arrow heads.
+/// Streamlines in space, with the positions of arrow heads.
 struct FlowLines {
   struct Line {
     std::vector<glm::dvec3> points;
@@ -54,11 +54,11 @@ struct FlowLines {
   std::vector<Line> lines;
 };
 
-/// UTF-8; `_{...}` and `^{...}` lower and raise. Empty: not drawn.
+/// UTF-8; `_{...}` and `^{...}` are subscripts and superscripts. Empty: not drawn.
 struct Captions {
   std::string time;             ///< "γ̇t = 12.50"
   std::string parameters;       ///< "Ca = 2.0   λ = 1   ν = 0.85"
-  std::string note;             ///< below the parameters, set apart: something that the viewer must know now
+  std::string note;             ///< below the parameters, highlighted: a temporary remark for the viewer
   std::string title;            ///< in the middle of the upper edge
   std::string panel;            ///< in the upper right corner: which view this is
   std::string scale = "R_{0}";  ///< above the scale bar
@@ -88,7 +88,7 @@ struct Frame {
   ViewParameters view;
   Captions captions;
   FlowArrows arrows;
-  FlowLines flow_lines;  ///< behind everything, or in their place in space where the style opens the membranes
+  FlowLines flow_lines;  ///< behind everything, or at their depth where the style opens the membranes
   std::optional<FlowProfile> profile;
   std::optional<Inset> inset;
   std::optional<Legend> legend;  ///< needed by the style "field"

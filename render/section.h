@@ -1,4 +1,4 @@
-// Where a plane cuts a vesicle: closed curves on the spectral surface, with tangents.
+// The intersection of a plane with a vesicle: closed curves on the spectral surface, with tangents.
 #pragma once
 
 #include "sim/types.h"
@@ -22,19 +22,20 @@ struct ClosedCurve {
   sim::Matrix directions;  ///< count x 3: parameters of the points on the unit sphere
 };
 
-/// All curves, longest first. The zero set of (x(s) - origin) . normal is traced on a net of `latitudes` x 2 latitudes
-/// cells, which must be finer than the smallest feature wanted; each point is then moved along its edge of the net
-/// until it lies on plane and spectral surface to 1e-12 of the vesicle's size. Empty when the plane misses the vesicle.
+/// All curves, longest first. The zero set of (x(s) - origin) . normal is traced on a net of `latitudes` x 2
+/// latitudes cells, which must be finer than the smallest feature of interest; each point is then moved along its
+/// edge of the net until it lies on plane and spectral surface to 1e-12 of the vesicle's size. Empty when the plane
+/// misses the vesicle.
 std::vector<ClosedCurve> cut(const sim::Coefficients& position, const CutPlane& plane, int latitudes = 48);
 
 /// The curve between two neighbouring points as a Bezier cubic: ends p0, p3, arms p1, p2.
 struct CubicPiece {
   Eigen::Vector2d p0, p1, p2, p3;
 };
-/// One piece a point; arms such that a circle is met to fourth order.
+/// One piece per point; the arms reproduce a circle to fourth order.
 std::vector<CubicPiece> cubic_pieces(const ClosedCurve& curve);
 
-/// Of the cubic pieces; a curve round a hole has negative area.
+/// Of the cubic pieces; a curve around a hole has negative area.
 double enclosed_area(const ClosedCurve& curve);
 double length(const ClosedCurve& curve);
 

@@ -1,4 +1,4 @@
-// The curve of sRGB between codes and light, both 0..1.
+// The sRGB transfer function between encoded values and linear light, both 0..1.
 #pragma once
 
 #include <cmath>

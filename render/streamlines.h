@@ -1,5 +1,6 @@
-// Evenly spaced streamlines of a plane flow (Jobard and Lefer 1997), each integrated in both directions by an embedded
-// Runge-Kutta pair of order 5(4) in arc length, so that line and spacing do not depend on how fast the flow is.
+// Evenly spaced streamlines of a plane flow (Jobard and Lefer 1997), each integrated in both directions by an
+// embedded Runge-Kutta pair of order 5(4) in arc length, so that lines and spacing do not depend on the speed of the
+// flow.
 #pragma once
 
 #include "plot.h"
@@ -15,13 +16,13 @@ namespace render {
 using PlaneFlow = std::function<Eigen::Vector2d(const Eigen::Vector2d&)>;
 
 struct StreamlineOptions {
-  double spacing = 0.25;     ///< wanted distance of neighbouring lines
-  double nearest = 0.45;     ///< a line ends where it comes nearer to another than this share of the spacing
+  double spacing = 0.25;     ///< target distance of neighbouring lines
+  double nearest = 0.45;     ///< a line ends where it is nearer to another than this share of the spacing
   double tolerance = 1e-4;   ///< of one step, as a share of the spacing
-  double shortest = 2;       ///< lines shorter than so many spacings are left out
+  double shortest = 2;       ///< lines shorter than so many spacings are dropped
   double closing = 0.2;      ///< a line that passes its seed again within this share of the spacing is drawn as a closed one
   double stagnation = 1e-3;  ///< lines end where the speed falls below this share of the fastest seen
-  double rest = 0;           ///< a flow that is nowhere faster is at rest, and has no lines
+  double rest = 0;           ///< a flow that is nowhere faster counts as at rest and has no lines
 };
 
 struct Streamline {
@@ -30,12 +31,12 @@ struct Streamline {
   bool closed = false; ///< the last point is joined to the first
 };
 
-/// Lines that fill the window; seeds: points through which the first lines go, as far as there is room. The result is a
-/// function of its arguments alone.
+/// Lines that fill the window; seeds: points through which the first lines pass, where there is room. The result
+/// depends only on the arguments.
 std::vector<Streamline> streamlines(const PlaneFlow& flow, const Range& x, const Range& y, const StreamlineOptions& options,
                                     const std::vector<Eigen::Vector2d>& seeds = {});
 
-/// Where arrow heads stand on a line: far from its ends, one at least on every line that is long enough, about
+/// Positions of arrow heads on a line: away from its ends, at least one on every line that is long enough, about
 /// `apart` from each other. Indices of points.
 std::vector<Eigen::Index> arrow_places(const Streamline& line, double apart);
 

@@ -1,4 +1,4 @@
-// Points of the spectral surface itself, anywhere on it.
+// Points anywhere on the spectral surface.
 #pragma once
 
 #include "sim/types.h"
@@ -14,7 +14,7 @@ struct SurfacePoints {
 /// directions: count x 3 unit vectors s; the poles of the parametrisation are allowed.
 SurfacePoints surface_points(const sim::Coefficients& position, const sim::Matrix& directions);
 
-/// Mean position and mean of x x^T over the volume inside, relative to that position: centre of mass and second moments
+/// Mean position, and mean of x x^T relative to it, over the enclosed volume: centre of mass and second moments
 /// divided by the volume.
 struct VolumeMoments {
   double volume = 0;

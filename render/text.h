@@ -13,7 +13,7 @@ namespace render {
 
 enum class Align { left, centre, right };
 
-/// One text of a page that keeps its texts apart from its drawing, as it is asked for.
+/// One text of a page whose texts are stored separately from its drawing.
 struct PageText {
   std::string text;  ///< with `_{...}` and `^{...}`
   double size = 0, x = 0, y = 0;
@@ -22,15 +22,15 @@ struct PageText {
   double red = 0, green = 0, blue = 0, alpha = 1;
 };
 
-/// The font as Cairo sees it, and what draw_text() makes of it; a value, cheap to copy.
+/// The Cairo font, and how draw_text() uses it; a value, cheap to copy.
 class Font {
  public:
   enum class Use {
     paths,   ///< outlines
     glyphs,  ///< letters of the embedded font, for PDF
-    kept     ///< nothing is drawn: the texts are kept for texts()
+    kept     ///< nothing is drawn: the texts are stored for texts()
   };
-  explicit Font(Use use = Use::paths);  ///< throws std::runtime_error when FreeType refuses the embedded file
+  explicit Font(Use use = Use::paths);  ///< throws std::runtime_error when FreeType cannot read the embedded file
   cairo_font_face_t* face() const { return face_.get(); }
   Use use() const { return use_; }
   void keep(PageText text) const { kept_->push_back(std::move(text)); }
@@ -42,28 +42,29 @@ class Font {
   std::shared_ptr<std::vector<PageText>> kept_ = std::make_shared<std::vector<PageText>>();
 };
 
-/// The pieces of a text that holds `_{...}` and `^{...}`.
+/// The pieces of a text with `_{...}` and `^{...}`.
 struct TextRun {
   std::string text;
   int level = 0;  ///< -1 lowered, 0, +1 raised
-  /// In heights of the text.
+  /// Relative to the height of the text.
   double size() const { return level == 0 ? 1 : 0.72; }
   double shift() const { return level < 0 ? -0.20 : level > 0 ? 0.38 : 0; }  ///< upward
 };
 std::vector<TextRun> text_runs(std::string_view text);
 
-/// Fills `text` with its baseline at y in the current source colour. UTF-8; `_{...}` lowers, `^{...}` raises.
-/// Returns the advance width. size: of the em square, in user units.
+/// Fills `text` with its baseline at y in the current source colour. UTF-8; `_{...}` is a subscript, `^{...}` a
+/// superscript. Returns the advance width. size: of the em square, in user units.
 double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
                  Align align = Align::left);
-/// The same with a soft white rim, for text that may stand on a vesicle.
+/// The same with a soft white rim, for text that may lie on a vesicle.
 double draw_text_on_picture(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
                             Align align = Align::left);
 double text_width(cairo_t* cairo, const Font& font, double size, std::string_view text);
 
-/// Shortest decimal form that a reader expects: "0.5", "-1", "10^{-3}", with a true minus sign; at most so many digits.
+/// Shortest conventional decimal form: "0.5", "-1", "10^{-3}", with a true minus sign; at most `digits` digits.
 std::string number_text(double value, int digits = 6);
-/// The numbers of an axis: as many digits as tell neighbours apart, the same for all, and one power of ten where that is shorter.
+/// The numbers of an axis: the same number of digits for all, enough to distinguish neighbours, and one power of ten
+/// where that is shorter.
 std::vector<std::string> number_texts(const std::vector<double>& values);
 
 }  // namespace render

@@ -1,4 +1,4 @@
-// How figures look: sizes of text and lines, colours of ground and ink, the usual size of a page. A catalogue.
+// Themes of figures: sizes of text and lines, colours of background and ink, default page size. A catalogue.
 #pragma once
 
 #include "palette.h"
@@ -15,22 +15,22 @@ struct Theme {
   double line = 0.9;          ///< frame and ticks; pt
   double stroke = 1.6;        ///< curves; pt
   double tick = 4.5;          ///< length; pt
-  double width = 510;         ///< of a page that is filled from side to side, pt
-  double height = 0;          ///< of a page; 0: as high as it comes
+  double width = 510;         ///< of a full-width page, pt
+  double height = 0;          ///< of a page; 0: follows the content
   Colour ground = white;
   Colour ink{0.10, 0.10, 0.12};
-  Colour soft{0.42, 0.44, 0.48};   ///< what stands back: references, frames of pictures
+  Colour soft{0.42, 0.44, 0.48};   ///< secondary elements: references, frames of pictures
   Colour faint{0.90, 0.91, 0.92};  ///< grids
 };
 const std::vector<Theme>& themes();
-/// Throws std::invalid_argument that names the nearest known theme. font_size: of `text`, in points; everything but the page
-/// follows it; 0: the theme's own.
+/// Throws std::invalid_argument that names the nearest known theme. font_size: of `text`, in points; everything but
+/// the page scales with it; 0: the theme's own.
 Theme find_theme(std::string_view name, double font_size = 0);
 
 /// Colours of curves: those of the palette, lightened on a dark ground.
 Colour on_ground(const Theme& theme, const Colour& colour);
 Colour curve_colour(const Theme& theme, std::size_t curve);
-/// Of the outline of a vesicle: the hue that its body has in pictures.
+/// Of the outline of a vesicle: the hue of its body in pictures.
 Colour vesicle_colour(const Theme& theme, std::size_t vesicle);
 
 }  // namespace render

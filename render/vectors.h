@@ -1,4 +1,4 @@
-// Vectors and matrices of pictures are GLM's; values of the simulation are Eigen's. Here they meet.
+// Conversion between GLM vectors, used in pictures, and Eigen vectors, used in the simulation.
 #pragma once
 
 #include "sim/types.h"

@@ -33,7 +33,7 @@ class Basis {
   int points() const;      ///< latitudes * longitudes
   const Vector& theta() const;
   const Vector& phi() const;
-  const Vector& weights() const;  ///< quadrature weights of all points over the unit sphere; they add up to 4 pi
+  const Vector& weights() const;  ///< quadrature weights of all points over the unit sphere; their sum is 4 pi
   const Vector& sin_theta() const;  ///< sin(theta) of all points
 
   GridValues synthesize(const Coefficients&) const;
@@ -54,10 +54,10 @@ Vec3 unit_vector(double theta, double phi);
 /// ... of every grid point, as rows.
 Matrix grid_directions(const Basis&);
 
-/// Orthonormal tangents of the unit sphere at s, in the directions of growing theta and phi.
+/// Orthonormal tangents of the unit sphere at s, in the directions of increasing theta and phi.
 struct SphereFrame {
   Vec3 e_theta, e_phi;
-  double sin_theta;  ///< at least 1e-150, so that a pole has a frame too
+  double sin_theta;  ///< at least 1e-150, so that the poles have frames too
 };
 SphereFrame sphere_frame(const Vec3& s);
 

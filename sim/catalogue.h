@@ -1,5 +1,5 @@
-// Catalogues: one table, a row a kind. The command line, the scene reader, error messages, the reference page and the
-// tests walk the table, so adding a row is all it takes to add a kind.
+// Catalogues: tables with one row per kind. The command line, the scene reader, error messages, the reference page
+// and the tests walk the table, so a new kind takes only a new row.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ template <class Function>
 struct CatalogueRow {
   std::string_view name;
   std::string_view meaning;            ///< one line, no full stop
-  std::vector<std::string_view> keys;  ///< scene keys that this kind reads beside those common to all kinds
+  std::vector<std::string_view> keys;  ///< scene keys of this kind, besides those common to all kinds
   Function function{};
 };
 
@@ -34,7 +34,7 @@ std::vector<std::string_view> row_names(const std::vector<Row>& table) {
   return names;
 }
 
-/// Number of insertions, deletions, replacements and swaps of neighbours that turn a into b.
+/// Number of insertions, deletions, replacements and swaps of adjacent letters that turn a into b.
 inline int edit_distance(std::string_view a, std::string_view b) {
   std::vector<int> before(b.size() + 1), last(b.size() + 1), now(b.size() + 1);
   std::iota(last.begin(), last.end(), 0);
@@ -50,7 +50,7 @@ inline int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-/// The known word nearest to a misspelt one; empty when none is near enough to be meant (over half the letters wrong).
+/// The known word nearest to a misspelt one; empty when none is a plausible correction (over half the letters wrong).
 inline std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known) {
   std::string_view best;
   int least = static_cast<int>(word.size()) / 2 + 1;
@@ -64,7 +64,7 @@ inline std::string_view nearest_word(std::string_view word, std::span<const std:
   return best;
 }
 
-/// " (did you mean 'prolate'?)" or, when nothing is near, " (known: a, b, c)".
+/// " (did you mean 'prolate'?)" or, when no word is near, " (known: a, b, c)".
 inline std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
   if (const std::string_view best = nearest_word(word, known); !best.empty())
     return " (did you mean '" + std::string(best) + "'?)";

@@ -1,4 +1,4 @@
-// Aliasing and its remedy: the grid on which a surface of degree p is differentiated (Algorithm 1, Eqs. (28), (29)).
+// Dealiasing: the grid on which a surface of degree p is differentiated (Algorithm 1, Eqs. (28), (29)).
 #pragma once
 
 #include "geometry.h"
@@ -13,9 +13,9 @@ Coefficients mean_curvature(Plans&, const Coefficients& position, int grid_order
 /// (relative, Eq. (28)) from rate v - 1 to v; `most` when none does.
 int upsampling_rate(Plans&, const Coefficients& position, double tolerance, int most = 8);
 
-/// Share of the mean curvature's spectrum in its last quarter of degrees, n > 3p/4: how far a shape is from resolved. The
-/// mean is left out; of a spectrum below a hundredth of it the share counts as if it were that large.
-/// `geometry` of a surface of degree p, on the grid of `basis`.
+/// Share of the mean curvature's spectrum in its last quarter of degrees, n > 3p/4: a measure of resolution. The mean
+/// is excluded; a spectrum below a hundredth of the mean counts as that large. `geometry`: of a surface of degree p,
+/// on the grid of `basis`.
 double curvature_tail(const Basis& basis, const Geometry& geometry);
 
 }  // namespace sim

@@ -1,4 +1,4 @@
-// What is measured of a saved state: areas, volumes, axes, inclination, energy, velocities, tensions.
+// Measures of a saved state: areas, volumes, axes, inclination, energy, velocities, tensions.
 #pragma once
 
 #include "correction.h"
@@ -16,7 +16,7 @@ struct VesicleMeasures {
   double tension_mean = 0, tension_min = 0, tension_max = 0;  ///< mean over the area; extremes on the grid
 };
 
-/// area0, volume0: of the initial state, for the errors.
+/// area0, volume0: of the initial state, reference for the errors.
 VesicleMeasures measure(Plans&, const VesicleState&, double area0, double volume0);
 
 /// The columns of a table of measures, declared once: v(name, meaning, value).

@@ -1,4 +1,4 @@
-// Two numbers for one sentence, "0.150003 is above 0.15".
+// Formats two numbers of one message so that they differ: "0.150003 is above 0.15".
 #pragma once
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// With as many significant digits, `least` or more, as tell them apart; 17 tell any two.
+/// With as many significant digits, at least `least`, as distinguish them; 17 distinguish any two.
 inline std::pair<std::string, std::string> told_apart(double a, double b, int least = 3) {
   std::pair<std::string, std::string> texts;
   for (int digits = least; digits <= 17; ++digits) {

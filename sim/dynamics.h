@@ -20,7 +20,7 @@ struct VesicleDynamics {
   Frame frame;                  ///< the motion of its shape at t_n
   Coefficients labels;
   Matrix tracers;               ///< parameters of the tracer dots
-  Coefficients saved_position;  ///< of the last saved state, in the present parametrisation
+  Coefficients saved_position;  ///< of the last saved state, in the current parametrisation
   Coefficients saved_velocity;
   double area = 0, volume = 0;  ///< A0, V0: of the initial surface as represented
   double energy = 0;            ///< E/(8 pi kappa) of x_n
@@ -30,7 +30,7 @@ struct VesicleDynamics {
   double high_share = 0;        ///< high-degree share of x after the last relabelling, the least since
   std::int64_t relabelled = 0, labels_laid = 0;
   double labels_laid_time = 0;
-  bool warned = false;          ///< its order does not resolve it, which has been said: once a vesicle and run
+  bool warned = false;          ///< the warning that its order does not resolve it was given: once per vesicle and run
 };
 
 /// What a member is to those who walk the state.

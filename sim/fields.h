@@ -1,6 +1,6 @@
-// Scalars on a membrane that pictures show: tension, curvatures, force densities, velocities, distance to the neighbours.
-// All are functions of one saved state and come as coefficients of a degree above that of the surface, in the units of
-// the scene; whoever draws them divides by the scales he wants.
+// Scalar fields on a membrane for pictures: tension, curvatures, force densities, velocities, distance to the
+// neighbours. All are functions of one saved state, given as coefficients of a higher degree than the surface, in the
+// units of the scene; the caller divides by the scales it needs.
 #pragma once
 
 #include "geometry.h"
@@ -15,7 +15,7 @@
 
 namespace sim {
 
-/// What the vesicles of one state share when their fields are taken one after the other. Made at the first need.
+/// Data that the vesicles of one state share when their fields are computed one after the other. Built on first use.
 class Surroundings {
  public:
   struct Net;
@@ -39,14 +39,14 @@ struct FieldSite {
   Surroundings& surroundings;
 };
 
-/// What a field is divided by to become a pure number.
+/// The unit by which a field is divided to make it dimensionless.
 enum class FieldScale {
   length,           ///< R0
   curvature,        ///< 1/R0
   square_curvature, ///< 1/R0^2
   tension,          ///< kappa_b/R0^2
   force,            ///< kappa_b/R0^3
-  velocity          ///< R0 times the rate of the flow; 1 where it has none
+  velocity          ///< R0 times the rate of the flow; 1 without a rate
 };
 
 /// Value at every grid point.
@@ -54,19 +54,19 @@ using FieldFunction = Vector (*)(const FieldSite&);
 
 struct FieldRow {
   std::string_view name, meaning;
-  std::string_view symbol;  ///< with _{...} and ^{...} for lowered and raised
+  std::string_view symbol;  ///< with _{...} and ^{...} for subscripts and superscripts
   FieldScale scale;
-  bool has_sign;            ///< zero is a value that the eye must find
-  bool needs_neighbours;    ///< there must be two vesicles
+  bool has_sign;            ///< zero is a distinguished value, to be visible in the colours
+  bool needs_neighbours;    ///< needs at least two vesicles
   FieldFunction function;
-  double automatic_end = std::numeric_limits<double>::infinity();  ///< of a range that is not given, in the unit above
+  double automatic_end = std::numeric_limits<double>::infinity();  ///< end of an automatic range, in the unit above
 };
 const std::vector<FieldRow>& field_catalogue();
 /// Throws std::invalid_argument that names the nearest known field.
 const FieldRow& find_field(std::string_view name);
 
-/// The field of one vesicle, one column; `surroundings`: of this state. Throws std::invalid_argument when it needs neighbours and there are none, and
-/// std::domain_error when the surface is not regular.
+/// The field of one vesicle, one column; `surroundings`: of this state. Throws std::invalid_argument when it needs
+/// neighbours and there are none, and std::domain_error when the surface is not regular.
 Coefficients membrane_field(Plans&, const FieldRow&, const State&, std::size_t vesicle, double bending_modulus,
                             Surroundings& surroundings);
 inline Coefficients membrane_field(Plans& plans, const FieldRow& field, const State& state, std::size_t vesicle,

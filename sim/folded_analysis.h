@@ -27,20 +27,20 @@ struct LaneBuffer {
 struct SpectrumRows {
   std::array<int, 4> first{};
   int count = 0;
-  std::vector<int> consecutive;  ///< 0, 12, 24, ...: rows of components that lie one after the other
+  std::vector<int> consecutive;  ///< 0, 12, 24, ...: rows of consecutive components
   explicit SpectrumRows(const FoldedGrid&);
 };
 
-/// What a sample of the four members of an orbit adds to the blocks cos even, cos odd, sin even, sin odd: [block][member],
-/// members f, -f, pi - f, pi + f.
+/// Contribution of a sample of the four members of an orbit to the blocks cos even, cos odd, sin even, sin odd:
+/// [block][member], members f, -f, pi - f, pi + f.
 constexpr double fold_sign[4][4] = {{1, 1, 1, 1}, {1, 1, -1, -1}, {1, -1, -1, 1}, {1, -1, 1, -1}};
 
 /// Adds 12 components of one sample to the eight folded sums it belongs to. Latitude parity: even sum and odd difference.
 /// samples: [2 latitudes][4 members][12], zero where there is none; folded: [parity][block] strided by `stride`.
 void fold(const Lane* samples, Lane* folded, std::ptrdiff_t stride, int width);
 
-/// Folded samples [latitude parity][block][orbit][12] -> spectrum rows at one latitude, [latitude parity][block, m][half][12].
-/// `width`: how many of the 12 are wanted.
+/// Folded samples [latitude parity][block][orbit][12] -> spectrum rows at one latitude,
+/// [latitude parity][block, m][half][12]. `width`: how many of the 12 are needed.
 void fourier_analysis(const FoldedGrid&, const SpectrumRows&, const Lane* folded, Lane* spectrum, int latitude, int width);
 
 /// Spectrum as above -> coefficients [nm][12].

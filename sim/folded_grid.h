@@ -1,5 +1,5 @@
-// A Gauss-Legendre x uniform grid seen through its mirrors: north-south, phi -> -phi and phi -> pi - phi. Separable
-// synthesis and analysis on it need a quarter of the Fourier and half of the Legendre products.
+// A Gauss-Legendre x uniform grid folded by its mirror symmetries: north-south, phi -> -phi and phi -> pi - phi.
+// Separable synthesis and analysis on it need a quarter of the Fourier and half of the Legendre products.
 #pragma once
 
 #include "legendre.h"
@@ -11,7 +11,7 @@ namespace sim {
 /// Longitudes of a grid of nlon points fall into orbits {f, -f, pi-f, pi+f} of a quarter; cosines and sines of even and odd
 /// m are even or odd under the two mirrors, which leaves four products of a quarter of the size.
 struct Quarter {
-  int index[4];  ///< of f, -f, pi - f, pi + f; -1 where the orbit has no such member of its own
+  int index[4];  ///< of f, -f, pi - f, pi + f; -1 where the orbit has no separate such member
 };
 
 /// Fourier and Legendre tables of one grid for degree p, folded by all mirror symmetries of the grid.

@@ -7,7 +7,8 @@
 
 namespace sim {
 
-/// Order of the grid on which areas and volumes are measured everywhere, so that all parts mean the same number.
+/// Order of the grid on which all areas and volumes are measured, so that all parts of the program use the same
+/// number.
 constexpr int measure_order(int p) { return 2 * p + 8; }
 
 struct Geometry {

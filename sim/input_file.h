@@ -1,4 +1,5 @@
-// Files that somebody else names: only regular ones are read. A named pipe may keep its reader for ever, a device never ends.
+// Input files named by the user: only regular files are read. A named pipe may block its reader forever, and a device
+// has no end.
 #pragma once
 
 #include <cerrno>
@@ -11,7 +12,7 @@
 
 namespace sim {
 
-/// The open file, or one that is not open; `why` then says "it is not a file", or what the system says.
+/// The open file, or one that is not open; `why` is then "it is not a file" or the system's message.
 inline std::ifstream open_input(const std::filesystem::path& path, std::string& why) {
   std::error_code error;
   if (const auto status = std::filesystem::status(path, error); exists(status) && !is_regular_file(status)) {
@@ -25,7 +26,7 @@ inline std::ifstream open_input(const std::filesystem::path& path, std::string& 
   return in;
 }
 
-/// Some editors begin a text in UTF-8 with a byte order mark; it is no part of the text.
+/// Some editors start UTF-8 text with a byte order mark, which is not part of the text.
 inline void skip_byte_order_mark(std::istream& in) {
   char start[3]{};
   if (in.read(start, 3) && std::string_view(start, 3) == "\xef\xbb\xbf") return;

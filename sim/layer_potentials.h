@@ -1,11 +1,12 @@
 // Stokes single and double layer (4), (5) of one vesicle on itself, as dense Galerkin matrices (31), (32).
 //
-// Each target on the q-grid, q = p + 1, is turned to the pole of a rotated source grid, where the Graham-Sloan weights
+// Each target on the q-grid, q = p + 1, becomes the pole of a rotated source grid, where the Graham-Sloan weights
 //   w_k pi/(s+1) [sum_{n<=s} P_n(cos t_k)] 2 sin(t_k/2)/sin(t_k)
-// integrate the weakly singular kernels spectrally. Positions and normals at the sources are synthesised from the rotated
-// coefficients. The kernel is analysed against the rotated basis and turned back, so that one row of the operator acts on
-// coefficients; the rows are then projected on the target harmonics. Every step is a separable product: O(p^5) in all.
-// The double layer carries the corrected sign, +3/(4 pi) (r.n)(r r^T)/|r|^5 with r = x - y, and no factor (1 - lambda).
+// integrate the weakly singular kernels spectrally. Positions and normals at the sources are synthesised from the
+// rotated coefficients. The kernel is analysed in the rotated basis and rotated back, so that one row of the operator
+// acts on coefficients; the rows are then projected on the target harmonics. Every step is a separable product:
+// O(p^5) in total. The double layer has the corrected sign, +3/(4 pi) (r.n)(r r^T)/|r|^5 with r = x - y, and no
+// factor (1 - lambda).
 #pragma once
 
 #include "basis.h"
@@ -25,7 +26,7 @@ struct LayerMatrix {
 
 struct LayerMatrices {
   LayerMatrix single;  ///< S of (4) with mu = 1
-  LayerMatrix dual;    ///< D of (5) without (1 - lambda); not assembled when it was not asked for
+  LayerMatrix dual;    ///< D of (5) without (1 - lambda); assembled only on request
 };
 
 /// Plan: degree p, source grid order s (p + 1 by default, more for accuracy).

@@ -1,4 +1,4 @@
-// The near-singular rule: single and double layer of one vesicle at a point close to it but not on it.
+// The near-singular rule: single and double layer of one vesicle at a point close to, but not on it.
 //
 // The nearest point of the surface becomes the pole of a rotated grid whose colatitudes are graded towards it,
 //   t = eps sinh(a u), u in (0, 1), a = asinh(pi / eps), eps = distance / metric at the pole,
@@ -22,7 +22,7 @@ struct NearestPoint {
   bool inside = false;             ///< the target lies on the inner side of the membrane
 };
 
-/// Newton for the nearest point of x(s) to the target, started at the parameter `start`.
+/// Newton's method for the nearest point of x(s) to the target, started at the parameter `start`.
 NearestPoint nearest_point(const Coefficients& position, const Vec3& target, const Vec3& start);
 
 /// Rows of (4) with mu = 1 and of (5) without (1 - lambda) for one target: (p+1)^2 x 6 each, blocks xx, xy, xz, yy, yz, zz.
@@ -32,7 +32,8 @@ struct PointRow {
 PointRow near_row(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder,
                   bool with_double);
 
-/// The same applied to densities of degree <= p at once, for a point that is wanted once: S force + D dual (nullptr: none).
+/// The same applied directly to densities of degree <= p, for a point that is evaluated once: S force + D dual
+/// (nullptr: none).
 Vec3 near_velocity(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder,
                    const Coefficients& force, const Coefficients* dual);
 

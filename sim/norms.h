@@ -1,4 +1,4 @@
-// Norms of spectral coefficients (18)-(21) and how a spectrum ends.
+// Norms of spectral coefficients (18)-(21) and of the tail of a spectrum.
 #pragma once
 
 #include "types.h"

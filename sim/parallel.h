@@ -1,4 +1,4 @@
-// Independent items on all threads. The result does not depend on the number of threads, nor does the exception.
+// Parallel loops over independent items. Neither the result nor the exception depends on the number of threads.
 #pragma once
 
 #include <exception>
@@ -6,7 +6,7 @@
 
 namespace sim {
 
-/// Runs body(k) for k in [0, n); of several exceptions the one of the smallest k is thrown on.
+/// Runs body(k) for k in [0, n); of several exceptions that of the smallest k is rethrown.
 template <class Body>
 void parallel_for(int n, Body&& body) {
   std::vector<std::exception_ptr> errors(n);

@@ -1,4 +1,4 @@
-// The store of plans a simulation uses: built when first asked for, immutable afterwards, handed out by reference.
+// Cache of the plans of a simulation: built on first use, immutable afterwards, returned by reference.
 #pragma once
 
 #include "basis.h"

@@ -1,6 +1,6 @@
-// Memory for numbers that are all written before they are read: not initialised, and in huge pages where it is so large that
-// the C library takes it from the kernel each time. A fresh small page costs as much as the arithmetic on what it holds, and
-// operators of high order are made anew every step.
+// Memory for numbers that are all written before they are read: uninitialised, and in huge pages when it is so large
+// that the C library requests it from the kernel each time. A fresh small page costs as much as the arithmetic on its
+// contents, and operators of high order are rebuilt at every step.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ struct RawAllocator {
     if (n * sizeof(T) < large) ::operator delete(p);
     else ::operator delete(p, std::align_val_t(huge_page));
   }
-  /// vector(n) leaves its elements as they are.
+  /// vector(n) leaves its elements uninitialised.
   template <class U>
   void construct(U* p) noexcept {
     ::new (static_cast<void*>(p)) U;

@@ -1,9 +1,10 @@
 // Reparametrization (Appendix A): grid points move along the membrane so that the high degrees of x become small.
 //
-// The paper moves points in the tangent plane and lets them leave the surface. Here the new parametrisation is kept as a
-// map of the sphere, s = map(s'), and y(s') = x(map(s')): points stay on the surface exactly, and everything that is a
-// function of the material point (history, velocity, tension, labels) is carried by the same map, f'(s') = f(map(s')).
-// Descent on E(y) = sum a_n |y_n|^2 with a_n = 0 below p/2, 0.1 up to p, and 1 beyond p: what truncation will lose.
+// The paper moves points in the tangent plane and lets them leave the surface. Here the new parametrisation is kept
+// as a map of the sphere, s = map(s'), and y(s') = x(map(s')): points stay on the surface exactly, and everything
+// that is a function of the material point (history, velocity, tension, labels) is transported by the same map,
+// f'(s') = f(map(s')). Descent on E(y) = sum a_n |y_n|^2 with a_n = 0 below p/2, 0.1 up to p, and 1 beyond p, which
+// truncation will remove.
 #pragma once
 
 #include "plans.h"
@@ -14,7 +15,7 @@ namespace sim {
 struct Relabelling {
   Coefficients map;
   double high_before = 0, high_after = 0;  ///< norm of the degrees >= p/2 relative to x without its mean
-  double lost = 0;                         ///< norm of the degrees beyond p after it, likewise: the truncation error
+  double lost = 0;                         ///< likewise of the degrees beyond p afterwards: the truncation error
 };
 
 /// Share of the degrees n >= p/2 in x without its mean.

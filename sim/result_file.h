@@ -1,8 +1,8 @@
-// Files of results: whole or absent, whatever happens while they are written, and nobody else's file in their place.
+// Result files: complete or absent, whatever happens while they are written, and never in place of a user's file.
 //
-// Each is written under the name of a draft, `.tanktread-PID-N.tmp`, in the folder where it will stand, and takes its own name
-// when it is complete and on the disk. A draft is locked while its process lives: one without a lock was left by a process that
-// was killed, and the next writer into the folder removes it.
+// Each is written as a draft, `.tanktread-PID-N.tmp`, in its final folder, and renamed when it is complete and on the
+// disk. A draft is locked while its process lives: one without a lock was left by a killed process, and the next
+// writer into the folder removes it.
 #pragma once
 
 #include <filesystem>
@@ -12,22 +12,22 @@
 
 namespace sim {
 
-/// Where a name leads when every link is followed, the last one included, whether or not anything is there. A pipe or a device
-/// keeps its name.
+/// Target of a name with every link followed, including the last, whether or not it exists. A pipe or a device keeps
+/// its name.
 std::filesystem::path destination(const std::filesystem::path&);
 
-/// The right to write an open file, held by this process until it closes the file or dies, however it dies. It belongs to the
-/// file, not to one of its names. Readers are not disturbed. False: another process holds it. Where the file system has no
-/// locks nothing can be known, and it is granted.
+/// Exclusive write lock on an open file, held until this process closes the file or ends in any way. It belongs to
+/// the file, not to one of its names, and does not affect readers. False: another process holds it. Granted where the
+/// file system has no locks.
 bool lock_file(int descriptor);
 
-/// Removes what processes that were killed left half-written in a folder.
+/// Removes the drafts that killed processes left in a folder.
 void remove_dead_drafts(const std::filesystem::path& folder);
 
-/// A new file in the making, locked; removed with the object unless it was published.
+/// A new file being written, locked; removed with the object unless it was published.
 class Draft {
  public:
-  /// Beside `target`, whose links must have been followed. Throws std::system_error.
+  /// In the folder of `target`, whose links must have been resolved. Throws std::system_error.
   explicit Draft(const std::filesystem::path& target);
   Draft(Draft&&) noexcept;
   Draft& operator=(Draft&&) noexcept;
@@ -37,8 +37,8 @@ class Draft {
   int descriptor() const { return file_; }
 
   void write(std::string_view bytes);  ///< appended; throws std::system_error
-  /// The draft takes the name, durably, in place of a file or link that may be there; throws std::system_error. With
-  /// `fresh` anything that is there already is an error, std::errc::file_exists.
+  /// Renames the draft durably to `target`, replacing an existing file or link; throws std::system_error. With
+  /// `fresh` an existing target is an error, std::errc::file_exists.
   void publish(const std::filesystem::path& target, bool fresh = false);
   /// After publish(): the descriptor with its lock, which the caller closes.
   int release();
@@ -49,11 +49,11 @@ class Draft {
   bool published_ = false;
 };
 
-/// Writes a whole file. Where `path` is a link, what it points to is replaced; a pipe or a device is written to as it is.
-/// Throws std::runtime_error with path and reason; nothing is left then.
+/// Writes a whole file. Where `path` is a link, its target is replaced; a pipe or a device is written to directly.
+/// Throws std::runtime_error with path and reason, and then leaves nothing behind.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// write_file(), or what else puts a whole file in its place.
+/// write_file(), or another function that writes a whole file.
 using FileWriter = std::function<void(const std::filesystem::path&, std::string_view)>;
 
 }  // namespace sim

@@ -1,21 +1,21 @@
-// Time stepping schemes: how one step moves all vesicles. Checks, corrections and relabelling come after, in stepper.h.
+// Time-stepping schemes: how one step moves all vesicles. Checks, corrections and relabelling follow, in stepper.h.
 //
 // A scheme maps a state and a step to positions, motions, the history of the next step and an estimate of its own local error,
 // or says why there is no such step. A row of the catalogue tells how far back a scheme looks; nothing else need know.
 //
 // Of first order, everything frozen at x_n, section 3.4 of the paper:
-//   explicit           tension by (43), then x+ = x + dt/alpha (...); the others' forces and one's own motion lag
+//   explicit           tension by (43), then x+ = x + dt/alpha (...); other forces and the own motion lag
 //   block-jacobi       tension by (43), then the position implicitly by (44)
-//   block-implicit     both together, vesicle by vesicle; the others' forces lag
+//   block-implicit     both together, vesicle by vesicle; other vesicles' forces lag
 //   globally-implicit  backward Euler (38) on the coupled system
 // bdf2: in a frame that moves with the vesicle (below), operators, normal and background flow at x* = x_n + r w,
 //   u+ = (x+ - h)/c. With r = dt/dt_before, w = x_n - x_{n-1}, h = x_n + r^2/(1+2r) w and c = dt (1+r)/(1+2r); second order for
 //   steps of any length. It starts with one step of extrapolated backward Euler, 2 x(two half steps) - x(one step).
 //
-// The frame of a vesicle turns as its shape was seen to turn at the last two times, at a rate linear in time, and drifts along
-// with the gradient of the flow (rigid.h). Positions of the past are carried along to the new time by its mean motion in each step, and only what the
-// membrane does beyond it is stepped: a vesicle that drifts or turns steadily does so without error, whatever the step,
-// and one that turns unsteadily has an error of second order in the change of its rate alone.
+// The frame of a vesicle rotates at a rate extrapolated linearly from the rotation of its shape at the last two
+// times, and drifts with the gradient of the flow (rigid.h). Past positions are carried to the new time by its mean
+// motion in each step, and only the remaining motion of the membrane is discretised: steady drift and rotation have
+// no error for any step, and unsteady rotation has a second-order error only in the change of its rate.
 #pragma once
 
 #include "attempt.h"
@@ -32,12 +32,12 @@ struct Setting {
 };
 Setting make_setting(const Scene&, Plans&);
 
-/// A step to be taken: from a state, over dt, in the flows that act in between.
+/// A step to take: from a state, over dt, in the flows that act during it.
 struct StepProblem {
   const Setting& setting;
   const Dynamics& before;
   double dt;
-  std::vector<FlowParameters> flows;  ///< none that is switched within the step
+  std::vector<FlowParameters> flows;  ///< none is switched within the step
 };
 
 /// What becomes of one vesicle: its position and motion at the new time, the frame of its shape there, and its history then.
@@ -64,7 +64,8 @@ const std::vector<CatalogueRow<Scheme>>& scheme_catalogue();
 /// Of time.scheme; throws std::invalid_argument where there is none of that name.
 const Scheme& scheme_of(const Scene&);
 
-/// Two membranes nearer than this stop the run: numerics.gap_floor, or 0.001 area radii of the smallest vesicle.
+/// Smallest gap between two membranes; a run stops below it: numerics.gap_floor, or 0.001 area radii of the smallest
+/// vesicle.
 double gap_floor(const Setting&, const Dynamics&);
 
 /// Operators at frozen positions with everything that the scene says of them. Throws std::domain_error where vesicles cross.

@@ -1,6 +1,6 @@
-// Initial shapes: rows of a catalogue that turn the parameters of a vesicle into coefficients of its position.
-// In the shape's own frame the grid's pole is the local z axis; it is laid along `axis`, and local y along the y axis
-// made perpendicular to it (the z axis where `axis` is parallel to y).
+// Initial shapes: rows of a catalogue that turn the parameters of a vesicle into coefficients of its position. In the
+// shape's own frame the grid's pole is the local z axis; it is aligned with `axis`, and local y with the y axis made
+// orthogonal to it (the z axis where `axis` is parallel to y).
 #pragma once
 
 #include "catalogue.h"
@@ -12,8 +12,8 @@ namespace sim {
 using ShapeFunction = Coefficients (*)(const VesicleParameters&);
 const std::vector<CatalogueRow<ShapeFunction>>& shape_catalogue();
 
-/// Position coefficients of degree `order`: scaled, turned, and moved to `center`.
-/// Throws std::invalid_argument with one sentence when the parameters cannot be met.
+/// Position coefficients of degree `order`: scaled, rotated, and moved to `center`. Throws std::invalid_argument with
+/// one sentence when no shape fits the parameters.
 Coefficients initial_position(const VesicleParameters&);
 
 /// Semi-axes (a, b, b) of the spheroid of that reduced volume and of area 4 pi, a along the symmetry axis.

@@ -11,13 +11,13 @@ namespace sim {
 struct SimulationOptions {
   std::filesystem::path trajectory;   ///< the file to write
   bool resume = false;                ///< continue it
-  bool another_time = false;          ///< ... to another end or with other saved times than the file says: it gets this scene
+  bool another_time = false;          ///< ... with a new end or other saved times: the file gets this scene
   std::int64_t steps = -1;            ///< at most so many steps in this call; -1: to the end; 0: the initial state only
   std::string scene_text;             ///< resolved scene, kept in the file
   std::string program, build;         ///< version and compiler, kept in the file
 };
 
-/// Called from the thread that simulates.
+/// Called from the simulating thread.
 struct SimulationObserver {
   std::function<void(const Dynamics&, const StepRecord&)> on_step;
   std::function<void()> on_ready;     ///< once, before the file appears or changes: the scene can be simulated
@@ -29,8 +29,8 @@ struct SimulationObserver {
 enum class SimulationEnd {
   finished,     ///< reached time.end
   step_limit,   ///< did options.steps steps
-  interrupted,  ///< should_stop said so
-  failed,       ///< a step failed in spite of retries; the last good state is in the file
+  interrupted,  ///< should_stop returned true
+  failed,       ///< a step failed despite retries; the last good state is in the file
 };
 
 struct SimulationOutcome {
@@ -43,11 +43,11 @@ struct SimulationOutcome {
 /// Throws std::invalid_argument for scenes that cannot be started, std::runtime_error for file errors.
 SimulationOutcome simulate(const Scene&, const SimulationOptions&, const SimulationObserver&);
 
-/// Where a trajectory goes on: its resume record, as strictly checked as its states. Throws std::runtime_error that names
-/// the file.
+/// The resume record of a trajectory, checked as strictly as its states. Throws std::runtime_error that names the
+/// file.
 Dynamics resume_point(const TrajectoryReader&, const std::filesystem::path&);
 
-/// Everything known of a scene without running it: the initial state and its warnings.
+/// Everything known about a scene without running it: the initial state and its warnings.
 struct Preview {
   State state;
   std::vector<std::string> warnings;

@@ -1,5 +1,6 @@
-// C = A B for a small constant matrix A and rows of B that are a few SIMD vectors wide: the one inner loop of operator
-// assembly. A lane is one of four targets, so every step of the assembly is such a product and none needs a shuffle.
+// C = A B for a small constant matrix A and rows of B that are a few SIMD vectors wide: the one inner loop of
+// operator assembly. Each lane holds one of four targets, so every step of the assembly is such a product and none
+// needs a shuffle.
 #pragma once
 
 #include <cmath>

@@ -28,13 +28,13 @@ Attempt<Dynamics> begun_anew(const Setting&, Dynamics);
 Attempt<State> evaluate(const Setting&, const Dynamics&);
 /// Takes velocity, tension and frames of a state of the present for what the next step starts from and expects.
 void expect(const Setting&, Dynamics&, const State&);
-/// To be called with a state that has been saved: it becomes the earlier end of the next interpolation.
+/// Call it with a state that has been saved: it becomes the earlier end of the next interpolation.
 void mark_saved(Dynamics&, const State&);
 
-/// A sentence that vesicle k is not resolved by its order.
+/// The warning that vesicle k is not resolved by its order.
 std::string resolution_warning(const Setting&, const Dynamics&, std::size_t k);
-/// All that is to be said of a scene before its first step: vesicles that are not resolved, flows that move nothing or faster
-/// than the step.
+/// All warnings about a scene before its first step: unresolved vesicles, flows that move nothing or vary faster than
+/// the step.
 std::vector<std::string> scene_warnings(const Setting&, const Dynamics&);
 
 }  // namespace sim

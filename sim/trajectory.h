@@ -1,8 +1,8 @@
-// The trajectory file: one HDF5 file that is readable at every instant and survives a kill at any.
+// The trajectory file: one HDF5 file that is readable at any time and survives a kill at any time.
 //
-// All HDF5 metadata is written once, at creation, in a draft, which takes its name when header and state 0 are
-// complete. Afterwards rows are written with pwrite at the offsets HDF5 gave, and an 8-byte counter, written last,
-// commits them. A state that append() has returned from is in the file, whatever happens next. See docs/trajectory.md.
+// All HDF5 metadata is written once, at creation, in a draft, which is renamed when header and state 0 are complete.
+// Afterwards rows are written with pwrite at the offsets HDF5 returned, and an 8-byte counter, written last, commits
+// them. A state that append() has returned from is in the file, whatever happens next. See docs/trajectory.md.
 #pragma once
 
 #include "types.h"
@@ -36,7 +36,7 @@ struct TrajectoryLayout {
   std::int64_t resume = 1;    ///< numbers in a resume payload
 };
 
-/// What a file says about itself, fixed at creation.
+/// Metadata of a file, fixed at creation.
 struct TrajectoryHeader {
   std::string scene;                  ///< the resolved scene, TOML
   std::string program;                ///< version of the program
@@ -80,14 +80,15 @@ void visit(R& r, V&& v) {
   v("relabelled", "1 when this step moved the grid points along the membrane", r.relabelled);
 }
 
-/// Is this file a trajectory of this program, damaged or not? False also where nothing is, or nothing that can be read.
+/// Whether this file is a trajectory of this program, damaged or not; false also when it does not exist or cannot be
+/// read.
 bool holds_trajectory(const std::filesystem::path&);
 
-/// Writes one trajectory and holds a lock on the file, so that a second writer is refused by whatever name.
+/// Writes one trajectory and holds a lock on the file, so that a second writer is refused under any name.
 class TrajectoryWriter {
  public:
-  /// A new file with its first state; an existing trajectory is replaced, a link is written through, anything else is left as
-  /// it is. `ready` is called when nothing but the name is missing; what it throws ends the creation. Errors are
+  /// A new file with its first state; an existing trajectory is replaced, a link is followed, anything else is left
+  /// unchanged. `ready` is called when only the name is missing; if it throws, the file is not created. Errors are
   /// std::runtime_error with one sentence.
   static TrajectoryWriter create(const std::filesystem::path&, const TrajectoryLayout&, const TrajectoryHeader&,
                                  const State& first, std::span<const double> resume_payload,
@@ -104,25 +105,27 @@ class TrajectoryWriter {
   std::int64_t count() const;  ///< states in the file
   double last_time() const;    ///< time of the last of them
 
-  /// The newest intact payload of write_resume(), as it was given.
+  /// The latest intact payload of write_resume().
   std::vector<double> resume_payload() const;
 
-  /// Does the file hold what a run had written after `step` steps, when it was at `time` and had saved `saves` states?
+  /// Whether the file is that of a run after `step` steps, at `time`, with `saves` saved states.
   bool holds(std::int64_t step, double time, std::int64_t saves) const;
-  /// Another scene from now on, with room for at least so many rows: the file is written anew and then replaced at once.
+  /// Continues with another scene and room for at least so many rows: the file is rewritten and then replaced
+  /// atomically.
   void continue_as(std::string_view scene, const TrajectoryLayout& room);
 
-  /// Appends records, then the state, and returns when both are committed. After a resume the steps between the resume
-  /// payload and the end of the file come a second time: states and records not newer than the file's last are left out.
+  /// Appends records, then the state, and returns when both are committed. After a resume the steps between the
+  /// resume payload and the end of the file are repeated: states and records not newer than the file's last are
+  /// skipped.
   void append(const State&, std::span<const StepRecord> = {});
   void append_steps(std::span<const StepRecord>);
-  /// What the stepper needs to continue bit for bit; two slots in turn, so that one is always whole. Call it after the
-  /// append of the same step, at least once a second.
+  /// What the stepper needs to continue bit for bit; two slots in turn, so that one is always complete. Call it after
+  /// the append of the same step, at least once a second.
   void write_resume(std::span<const double> payload);
-  /// The last one of a run that ends after `step` steps: fills both slots, so that the bytes of the file do not depend on
-  /// how often the clock asked for a renewal before.
+  /// The final record of a run that ends after `step` steps: fills both slots, so that the bytes of the file do not
+  /// depend on how often the record was renewed before.
   void finish_resume(std::span<const double> payload, std::int64_t step);
-  /// A remark made during the run (a warning, why it stopped): cut at 255 bytes, 64 in a file, equal ones once.
+  /// A note of the run (a warning, why it stopped): at most 255 bytes, 64 in a file, equal ones only once.
   void note(std::string_view);
 
  private:
@@ -142,15 +145,15 @@ class TrajectoryReader {
   const TrajectoryHeader& header() const;
   const TrajectoryLayout& layout() const;
   std::int64_t count() const;     ///< states at the last refresh()
-  std::int64_t refresh();         ///< looks at the file again and returns count()
+  std::int64_t refresh();         ///< reads the counter again and returns count()
   State state(std::int64_t k) const;  ///< 0 <= k < count(); a damaged row is an error that names it
   double time(std::int64_t k) const;  ///< of that state, cheaply
   std::vector<StepRecord> steps() const;
   std::vector<std::string> notes() const;
   std::vector<double> resume_payload() const;
-  /// Was the last thing written finish_resume() after so many steps, and is it whole?
+  /// Whether the last write was a complete finish_resume() after so many steps.
   bool finished_after(std::int64_t step) const;
-  /// States whose checksum does not fit.
+  /// States whose checksum does not match.
   std::vector<std::int64_t> damaged() const;
 
  private:

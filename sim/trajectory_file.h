@@ -10,12 +10,12 @@
 
 namespace sim::file {
 
-/// Where the rows of one dataset lie in the file, bytes.
+/// Position of the rows of one dataset in the file, in bytes.
 struct Place {
   std::uint64_t offset = 0, row_bytes = 0, rows = 0;
 };
 
-/// Everything HDF5 has to say about a file, taken once when it is opened.
+/// Everything that HDF5 knows about a file, read once when it is opened.
 struct Map {
   TrajectoryHeader header;
   TrajectoryLayout layout;
@@ -26,12 +26,12 @@ struct Map {
 
 inline constexpr std::uint64_t note_bytes = 256, note_rows = 64;
 
-/// Makes of a draft an empty file of that layout: header, all datasets allocated (sparse) and zero. Errors name `path`, which
-/// the file will have.
+/// Turns a draft into an empty file of that layout: header, all datasets allocated (sparse) and zero. Errors name
+/// `path`, the final name.
 void create(const Draft&, const std::filesystem::path& path, const TrajectoryLayout&, const TrajectoryHeader&);
 
-/// An open file descriptor whose transfers are complete or an exception with a sentence. Only regular files are opened:
-/// a named pipe may keep its reader for ever, and opening a device may do something.
+/// An open file descriptor whose transfers are complete or throw an exception with a sentence. Only regular files are
+/// opened: a named pipe may block its reader forever, and opening a device may have side effects.
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path&, bool writable);
@@ -44,24 +44,24 @@ class Descriptor {
   void sync(bool data_only) const;
   std::uint64_t inode() const;
   std::uint64_t size() const;
-  /// Is this descriptor of the same file?
+  /// Whether this descriptor refers to the same file.
   bool same_file(int descriptor) const;
   const std::filesystem::path& path() const { return path_; }
-  void renamed(const std::filesystem::path& path) { path_ = path; }  ///< the file, by somebody
+  void renamed(const std::filesystem::path& path) { path_ = path; }  ///< after the file was renamed
 
  private:
   std::filesystem::path path_;
   int fd_ = -1;
 };
 
-/// Has HDF5 open the file of the descriptor read-only, without locking, checks format, names, types and extents, and closes
-/// it again. Nothing when another file has taken the name since.
+/// Has HDF5 open the file of the descriptor read-only, without locking, checks format, names, types and extents, and
+/// closes it again. Empty when another file has taken the name since.
 std::optional<Map> map(const Descriptor&);
 
-/// The right to write a trajectory: a lock on the file itself, whatever name it was opened by.
+/// The right to write a trajectory: a lock on the file itself, under whatever name it was opened.
 class Lock {
  public:
-  /// Throws a sentence when another process has it.
+  /// Throws a sentence when another process holds it.
   explicit Lock(const std::filesystem::path&);
   /// Of a draft that has been published.
   explicit Lock(Draft&& draft) : fd_(draft.release()) {}
@@ -73,12 +73,12 @@ class Lock {
   int fd_ = -1;
 };
 
-/// May a new trajectory take the place of what has this name? A file that is neither a trajectory of ours, damaged or not, nor
-/// empty throws a sentence, and so does what is no file.
+/// Checks that a new trajectory may replace what has this name: throws a sentence unless it is empty or a trajectory
+/// of this program, damaged or not, and also when it is not a regular file.
 void require_ours(const std::filesystem::path&);
 bool holds_mark(const std::filesystem::path&);
 
-/// Draft's steps with sentences of their own.
+/// The steps of Draft, with their own error messages.
 Draft draft(const std::filesystem::path&);
 void publish(Draft&, const std::filesystem::path&, bool fresh);
 

@@ -1,11 +1,11 @@
-// The velocity of the fluid anywhere, outside and inside of the membranes, from a saved state.
+// The velocity of the fluid anywhere, outside and inside the membranes, from a saved state.
 //
 // With the force densities f_j of all membranes on the fluid and their velocities u_j, from the representation formula:
-//   c u(x) = u_inf(x) + sum_j { S_j[f_j](x) + (1 - lambda_j) D_j[u_j](x) },   c = 1 outside, lambda_k inside of vesicle k
-// (D with the sign of layer_potentials.h: of a rigid motion it makes -1 inside, 0 outside, and this part of u_j is taken
-// exactly). Both sides meet the
-// membrane's own velocity. Far from a membrane the smooth rule serves, on the coarsest of three source grids that is fine
-// enough; nearer than some spacings of the finest grid the near-singular rule of near.h.
+//   c u(x) = u_inf(x) + sum_j { S_j[f_j](x) + (1 - lambda_j) D_j[u_j](x) },   c = 1 outside, lambda_k inside vesicle k
+// (D with the sign of layer_potentials.h: its factor for a rigid motion is -1 inside, 0 outside, and this part of u_j
+// is exact). Both sides converge to the membrane's own velocity. Far from a membrane the smooth rule is used, on the
+// coarsest of three source grids that is fine enough; nearer than some spacings of the finest grid, the near-singular
+// rule of near.h.
 #pragma once
 
 #include "suspension.h"
@@ -15,9 +15,9 @@
 namespace sim {
 
 struct FlowFieldOptions {
-  double spacings = 3;           ///< the smooth rule keeps so many local source spacings away; its error falls as e^(-2 pi n)
-  NearOrder near_order{48, 64};  ///< 32 x 40 is fine for the eye, at a third of the cost
-  bool hold_spheres = true;      ///< by the tension that keeps them round in a run; else they stretch as (3a) alone says
+  double spacings = 3;           ///< least distance n of the smooth rule in source spacings; error ~ e^(-2 pi n)
+  NearOrder near_order{48, 64};  ///< 32 x 40 is enough for pictures, at a third of the cost
+  bool hold_spheres = true;      ///< by the tension that keeps them round in a run; otherwise they stretch as by (3a)
 };
 
 /// One membrane as a source of flow, frozen at a state.
@@ -35,7 +35,7 @@ struct FlowSource {
   const RotationPlan* rotation = nullptr;
 };
 
-/// Everything that the velocity at a point depends on; values at one instant.
+/// Everything that the velocity at a point depends on, at one instant.
 struct FlowField {
   std::vector<FlowParameters> flows;
   double time = 0;
@@ -47,8 +47,8 @@ FlowField flow_field(Plans&, const Scene&, const State&, const FlowFieldOptions&
 
 struct FlowSamples {
   Matrix velocity;          ///< count x 3
-  std::vector<int> within;  ///< number of the vesicle that holds the point, -1 outside of all
-  Vector distance;          ///< to the nearest membrane; a lower bound where it is farther than the near rule's reach
+  std::vector<int> within;  ///< index of the vesicle that contains the point, -1 outside all
+  Vector distance;          ///< to the nearest membrane; a lower bound beyond the range of the near rule
 };
 /// At points, count x 3. The result does not depend on the number of threads.
 FlowSamples velocity_at(const FlowField&, const Matrix& points);

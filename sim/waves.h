@@ -1,10 +1,11 @@
-// How fast the spherical harmonics of one degree oscillate along a surface: its Laplacian, reduced to each degree.
+// Wave numbers of the spherical harmonics on a surface: its Laplacian, restricted to each degree.
 //
-// On the unit sphere the rotations L = s x grad keep a degree n, and L.L f = -n(n+1) f. The inverse metric of a surface,
-// turned by a right angle in the tangent plane of the parameter sphere, is fitted by a constant matrix C, so that
+// On the unit sphere the rotations L = s x grad keep a degree n, and L.L f = -n(n+1) f. The inverse metric of a
+// surface, rotated by a right angle in the tangent plane of the parameter sphere, is fitted by a constant matrix C,
+// so that
 //   Laplacian f ~ sum_ab C_ab L_a L_b f,
 // exact for a sphere, and for an ellipsoid up to the factor by which its area is stretched. Each degree then has 2n+1
-// orthonormal modes with wave numbers of their own: long waves along a prolate, short ones round it.
+// orthonormal modes with their own wave numbers: long waves along a prolate, short ones around it.
 #pragma once
 
 #include "geometry.h"
@@ -30,9 +31,10 @@ std::vector<Matrix> mode_filter(const SurfaceWaves& w, Gain&& gain, int first = 
   return blocks;
 }
 
-/// What truncation leaves of normal fields at the upper edge of the spectrum: psi n with psi of degrees `first` to p + 1 is
-/// cut off at degree p, and this is the inner product of what is left, (n psi_a)_p . (n psi_b)_p, over the parameter sphere.
-/// Degrees well below p are whole, and would give the unit matrix; of degrees p and p + 1 about half is left.
+/// Effect of truncation on normal fields at the upper edge of the spectrum: psi n with psi of degrees `first` to
+/// p + 1 is truncated at degree p, and this is the inner product of the rest, (n psi_a)_p . (n psi_b)_p, over the
+/// parameter sphere. Degrees well below p are not affected and would give the unit matrix; of degrees p and p + 1
+/// about half is left.
 Matrix truncated_overlap(const SurfaceWaves&, int first);
 
 }  // namespace sim

@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MODULES = ["sim", "render", "app"]
 # What the pictures may know of the simulation: values and how they are sampled, never operators or steppers.
 RENDER_SEES = {"sim/types.h", "sim/basis.h", "sim/legendre.h", "sim/geometry.h", "sim/parameters.h", "sim/catalogue.h", "sim/trajectory.h",
-               "sim/result_file.h", "sim/digits.h"}
+               "sim/result_file.h", "sim/input_file.h", "sim/digits.h"}
 HDF5_FILES = re.compile(r"sim/trajectory\w*\.(h|cpp)$")
 GL_FILES = re.compile(r"render/context\w*\.(h|cpp)$")
 GL_WORDS = re.compile(r"\bOSMesa[A-Z]\w*|\begl[A-Z]\w*\s*\(|<EGL/|<GL/osmesa")
