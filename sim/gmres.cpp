@@ -5,16 +5,17 @@
 namespace sim {
 
 GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b, const Vector& guess, double tolerance,
-                  int most_iterations) {
+                  int most_iterations, const InnerProduct& product) {
+  const auto norm = [&](const Vector& v) { return std::sqrt(product(v, v)); };
   GmresResult result{guess, 0, 0, false};
-  const double scale = b.norm();
+  const double scale = norm(b);
   if (scale == 0) {
     result.solution.setZero();
     result.converged = true;
     return result;
   }
   Vector r = guess.isZero(0) ? b : Vector(b - A(guess));
-  double beta = r.norm();
+  double beta = norm(r);
   if (beta > scale) {  // a guess that is worse than none costs digits
     r = b;
     beta = scale;
@@ -36,10 +37,10 @@ GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b,
     Vector w = A(directions[k]);
     // Modified Gram-Schmidt, one row at a time; then the Givens rotations of the earlier columns.
     for (int i = 0; i <= k; ++i) {
-      h(i, k) = w.dot(basis[i]);
+      h(i, k) = product(w, basis[i]);
       w -= h(i, k) * basis[i];
     }
-    const double length = w.norm();
+    const double length = norm(w);
     h(k + 1, k) = length;
     for (int i = 0; i < k; ++i) {
       const double above = h(i, k), below = h(i + 1, k);

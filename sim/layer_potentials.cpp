@@ -1,6 +1,7 @@
 #include "layer_potentials.h"
 
 #include "folded_analysis.h"
+#include "kernels.h"
 
 #include <algorithm>
 #include <array>
@@ -88,28 +89,16 @@ struct SourcePoint {
   Lane x[3], n[3], area;  ///< position, area-weighted normal x_t x x_f, its length
 };
 
-/// Stokes kernels at the four targets of a tile: S |n| w/(8 pi) and +3/(4 pi) (r.n) r r^T/|r|^5 w, n = x_t x x_f.
+/// Stokes kernels at the four targets of a tile, with the weight and |n| or n of the source, n = x_t x x_f.
 void kernels(const Lane* target, const SourcePoint& y, double weight, bool with_double, Lane* out) {
   const Lane r0 = target[0] - y.x[0], r1 = target[1] - y.x[1], r2 = target[2] - y.x[2];
-  const Lane rr = r0 * r0 + r1 * r1 + r2 * r2;
-  const Lane inverse = 1.0 / lane_sqrt(rr), inverse2 = inverse * inverse;
-  const Lane s = y.area * inverse * (weight / (8 * pi)), ss = s * inverse2;
-  const Lane q00 = r0 * r0, q01 = r0 * r1, q02 = r0 * r2, q11 = r1 * r1, q12 = r1 * r2, q22 = r2 * r2;
-  out[0] = s + ss * q00;
-  out[1] = ss * q01;
-  out[2] = ss * q02;
-  out[3] = s + ss * q11;
-  out[4] = ss * q12;
-  out[5] = s + ss * q22;
+  const Lane r[3] = {r0, r1, r2}, inverse = 1.0 / lane_sqrt(r0 * r0 + r1 * r1 + r2 * r2);
+  const KernelTensor<Lane> single = stokeslet(inverse, y.area * (weight * stokeslet_factor));
+  outer_components(single.outer, r, out);
+  for (const int diagonal : {0, 3, 5}) out[diagonal] += single.even;
   if (!with_double) return;
   const Lane rn = r0 * y.n[0] + r1 * y.n[1] + r2 * y.n[2];
-  const Lane d = rn * inverse2 * inverse2 * inverse * (3 * weight / (4 * pi));
-  out[6] = d * q00;
-  out[7] = d * q01;
-  out[8] = d * q02;
-  out[9] = d * q11;
-  out[10] = d * q12;
-  out[11] = d * q22;
+  outer_components(stresslet(inverse, Lane(rn * (weight * stresslet_factor))), r, out + 6);
 }
 
 void transpose(Lane* block) {

@@ -1,5 +1,7 @@
 #include "near.h"
 
+#include "kernels.h"
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -136,9 +138,15 @@ GradedGrid graded_grid(const RotationPlan& plan, const Coefficients& x, const Ve
   return g;
 }
 
-/// 3/(4 pi) (r.n)/|r|^5, the scalar of the double layer.
-Eigen::ArrayXXd dual_scalar(const GradedGrid& g, const Eigen::ArrayXXd& inverse) {
-  return 3 / (4 * pi) * (g.r[0] * g.n[0] + g.r[1] * g.n[1] + g.r[2] * g.n[2]) * inverse.square().square() * inverse;
+/// The outer part of the double layer's kernel with its weights.
+Eigen::ArrayXXd dual_outer(const GradedGrid& g, const Eigen::ArrayXXd& inverse) {
+  const Eigen::ArrayXXd rn = g.r[0] * g.n[0] + g.r[1] * g.n[1] + g.r[2] * g.n[2];
+  return stresslet(inverse, Eigen::ArrayXXd(stresslet_factor * rn));
+}
+
+/// The kernel of the single layer with its weights.
+KernelTensor<Eigen::ArrayXXd> single_kernel(const GradedGrid& g, const Eigen::ArrayXXd& inverse) {
+  return stokeslet(inverse, Eigen::ArrayXXd(stokeslet_factor * g.area));
 }
 
 }  // namespace
@@ -147,8 +155,9 @@ PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& t
                   NearOrder order, bool with_double) {
   const GradedGrid g = graded_grid(plan, x, target, nearest, order);
   const int p = g.p, nc = coefficient_count(p);
-  const Eigen::ArrayXXd inverse = g.rr.rsqrt(), s0 = g.area * inverse / (8 * pi), s2 = s0 * inverse.square();
-  const Eigen::ArrayXXd d5 = with_double ? dual_scalar(g, inverse) : Eigen::ArrayXXd();
+  const Eigen::ArrayXXd inverse = g.rr.rsqrt();
+  const KernelTensor<Eigen::ArrayXXd> single = single_kernel(g, inverse);
+  const Eigen::ArrayXXd outer = with_double ? dual_outer(g, inverse) : Eigen::ArrayXXd();
 
   // The transposed synthesis of the 12 components.
   PointRow row{Matrix(nc, 6), with_double ? Matrix(nc, 6) : Matrix()};
@@ -158,7 +167,9 @@ PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& t
       const Eigen::ArrayXXd rce = g.r[c] * g.r[e];
       for (const bool dual : {false, true}) {
         if (dual && !with_double) continue;
-        const Matrix kernel = dual ? Matrix(d5 * rce) : c == e ? Matrix(s0 + s2 * rce) : Matrix(s2 * rce);
+        const Matrix kernel = dual     ? Matrix(outer * rce)
+                              : c == e ? Matrix(single.even + single.outer * rce)
+                                       : Matrix(single.outer * rce);
         const Matrix spectrum = kernel * g.fourier.transpose();  // nt x (2p+1)
         auto out = (dual ? row.dual : row.single).col(block);
         for (int m = -p; m <= p; ++m) {
@@ -182,15 +193,16 @@ Vec3 near_velocity(const RotationPlan& plan, const Coefficients& x, const Vec3& 
     for (int d = 0; d < 3; ++d) values[d] = (spectra(g, turned, g.table.value, d) * g.fourier).array();
     return values;
   };
-  const Eigen::ArrayXXd inverse = g.rr.rsqrt(), s0 = g.area * inverse / (8 * pi);
+  const Eigen::ArrayXXd inverse = g.rr.rsqrt();
+  const KernelTensor<Eigen::ArrayXXd> single = single_kernel(g, inverse);
   const auto f = sampled(force);
-  Eigen::ArrayXXd along = s0 * inverse.square() * (g.r[0] * f[0] + g.r[1] * f[1] + g.r[2] * f[2]);
+  Eigen::ArrayXXd along = single.outer * (g.r[0] * f[0] + g.r[1] * f[1] + g.r[2] * f[2]);
   if (dual) {
     const auto u = sampled(*dual);
-    along += dual_scalar(g, inverse) * (g.r[0] * u[0] + g.r[1] * u[1] + g.r[2] * u[2]);
+    along += dual_outer(g, inverse) * (g.r[0] * u[0] + g.r[1] * u[1] + g.r[2] * u[2]);
   }
   Vec3 velocity;
-  for (int d = 0; d < 3; ++d) velocity[d] = (s0 * f[d] + along * g.r[d]).sum();
+  for (int d = 0; d < 3; ++d) velocity[d] = (single.even * f[d] + along * g.r[d]).sum();
   return velocity;
 }
 

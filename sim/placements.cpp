@@ -1,5 +1,6 @@
 #include "placements.h"
 
+#include "gap.h"
 #include "geometry.h"
 #include "input_file.h"
 #include "shapes.h"

@@ -2,7 +2,8 @@
 // machine.
 #pragma once
 
-#include "interaction.h"
+#include "catalogue.h"
+#include "parameters.h"
 
 #include <functional>
 

@@ -46,7 +46,9 @@ struct Moved {
   Motion motion;
   Frame frame;
   History history;
-  double error = 0;  ///< estimated local error of the position: root of its mean square over the parameters, in area radii
+  /// Estimated local error of the position: root of its mean square over the parameters, in area radii. Of the right order;
+  /// right to leading order except for block-jacobi and explicit, whose splitting it does not see.
+  double error = 0;
 };
 
 struct Advance {

@@ -2,6 +2,7 @@
 
 #include "dealias.h"
 #include "digits.h"
+#include "gap.h"
 #include "norms.h"
 #include "parallel.h"
 #include "shapes.h"

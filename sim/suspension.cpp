@@ -114,14 +114,13 @@ std::vector<Coefficients> suspension_forcing(const Suspension& s, std::span<cons
 
 namespace {
 
-/// Splits the packed unknowns of all vesicles.
-std::vector<Vector> split(const Suspension& s, const Vector& y) {
+/// Splits the packed unknowns of all bodies.
+std::vector<Vector> split(std::span<const Block> blocks, const Vector& y) {
   std::vector<Vector> parts;
   Eigen::Index at = 0;
-  for (const Membrane& m : s.membranes) {
-    const Eigen::Index size = 4 * coefficient_count(m.order());
-    parts.push_back(y.segment(at, size));
-    at += size;
+  for (const Block& block : blocks) {
+    parts.push_back(y.segment(at, block.size));
+    at += block.size;
   }
   return parts;
 }
@@ -137,68 +136,57 @@ Vector join(const std::vector<Vector>& parts) {
   return y;
 }
 
+/// Left-hand side of the coupled system.
+Vector apply_blocks(std::span<const Block> blocks, const Interaction& interaction, const Vector& y) {
+  const int n = int(blocks.size());
+  const std::vector<Vector> parts = split(blocks, y);
+  std::vector<Densities> densities(n);
+  std::vector<Coefficients> velocity(n);
+  parallel_for(n, [&](int i) {
+    Trial trial = blocks[i].trial(parts[i]);
+    densities[i] = std::move(trial.densities);
+    velocity[i] = std::move(trial.own_velocity);
+  });
+  if (n > 1) {
+    const std::vector<Coefficients> others = induced_velocity(interaction, densities);
+    for (int i = 0; i < n; ++i) velocity[i].values += others[i].values;
+  }
+  std::vector<Vector> rows(n);
+  parallel_for(n, [&](int i) { rows[i] = blocks[i].rows(parts[i], velocity[i]); });
+  return join(rows);
+}
+
+Vector precondition_blocks(std::span<const Block> blocks, const Vector& y) {
+  std::vector<Vector> parts = split(blocks, y);
+  parallel_for(int(blocks.size()), [&](int i) { parts[i] = blocks[i].precondition(parts[i]); });
+  return join(parts);
+}
+
 }  // namespace
 
 SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const Coefficients> forcing,
                                  std::span<const Motion> guess, double tolerance, Preconditioner kind,
                                  std::span<const RigidMotion> frames) {
   const int n = int(s.membranes.size());
-  // A rigid motion solves the homogeneous equations for itself: (39) maps it to itself and every other vesicle to nothing.
-  const auto apply = [&](const Vector& y) {
-    const std::vector<Vector> parts = split(s, y);
-    std::vector<Densities> densities(n);
-    std::vector<Motion> motions(n);
-    std::vector<Coefficients> velocity(n);
-    parallel_for(n, [&](int i) {
-      const Membrane& m = s.membranes[i];
-      motions[i] = unpacked(parts[i], m.order());
-      densities[i].force = implicit_force(m, c, motions[i]);
-      densities[i].dual = dual_density(m.body, m.material.viscosity_contrast, motions[i].velocity);
-      velocity[i] = layer_velocity(m, densities[i].force, motions[i].velocity);
-    });
-    if (n > 1) {
-      const std::vector<Coefficients> others = induced_velocity(s.interaction, densities);
-      for (int i = 0; i < n; ++i) velocity[i].values += others[i].values;
-    }
-    std::vector<Vector> rows(n);
-    parallel_for(n, [&](int i) { rows[i] = system_rows(s.membranes[i], motions[i], velocity[i]); });
-    return join(rows);
-  };
-  std::vector<SpectralInverse> inverses;
+  std::vector<Block> blocks;
   std::vector<Vector> right, start;
   std::vector<Coefficients> rigid;
+  // A rigid motion solves the homogeneous equations for itself: (39) maps it to itself and every other vesicle to nothing.
   for (int i = 0; i < n; ++i) {
     const Membrane& m = s.membranes[i];
+    blocks.push_back(vesicle_block(m, c, kind));
     rigid.push_back(frames.empty() ? Coefficients{m.order(), Matrix::Zero(coefficient_count(m.order()), 3)}
                                    : rigid_velocity(m.body, frames[i]));
-    inverses.push_back(spectral_inverse(m, c));
     right.push_back(system_right(m, {m.order(), forcing[i].values - rigid[i].values}));
     start.push_back(packed({{m.order(), guess[i].velocity.values - rigid[i].values}, guess[i].tension}));
     if (m.pinned) start[i][start[i].size() - coefficient_count(m.order())] = 0;
   }
-  const auto by_spectrum = [&](const Vector& y) {
-    std::vector<Vector> parts = split(s, y);
-    parallel_for(n, [&](int i) { parts[i] = precondition(s.membranes[i], inverses[i], parts[i]); });
-    return join(parts);
-  };
-  const auto by_block = [&](const Vector& y) {
-    constexpr double loose = 1e-3;  // GMRES is flexible; tighter inner solves save no outer iteration
-    const std::vector<Vector> parts = split(s, y);
-    std::vector<Vector> solved(n);
-    parallel_for(n, [&](int i) {
-      const Membrane& m = s.membranes[i];
-      solved[i] = gmres([&](const Vector& v) { return apply_system(m, c, v); },
-                        [&](const Vector& v) { return precondition(m, inverses[i], v); }, parts[i],
-                        Vector::Zero(parts[i].size()), loose, 60)
-                      .solution;
-    });
-    return join(solved);
-  };
   constexpr int most_iterations = 300;
-  const GmresResult result = gmres(apply, kind == Preconditioner::block ? LinearMap(by_block) : LinearMap(by_spectrum),
-                                   join(right), join(start), tolerance, most_iterations);
+  const GmresResult result =
+      gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, y); },
+            [&](const Vector& y) { return precondition_blocks(blocks, y); }, join(right), join(start), tolerance, most_iterations);
   SuspensionSolve solve{{}, result.iterations, result.residual, result.converged};
-  const std::vector<Vector> parts = split(s, result.solution);
+  const std::vector<Vector> parts = split(blocks, result.solution);
   for (int i = 0; i < n; ++i) {
     solve.motions.push_back(unpacked(parts[i], s.membranes[i].order()));
     solve.motions[i].velocity.values += rigid[i].values;

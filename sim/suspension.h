@@ -1,6 +1,7 @@
 // All vesicles at frozen positions, and the coupled system (40)-(42): the self blocks of membrane.h plus interactions.
 #pragma once
 
+#include "block.h"
 #include "interaction.h"
 
 namespace sim {
@@ -48,11 +49,6 @@ std::vector<Coefficients> suspension_forcing(const Suspension&, std::span<const 
 /// known motions if given: the lagged interaction of the block schemes.
 std::vector<Coefficients> interaction_of(const Suspension&, std::span<const Coefficients> forces,
                                          std::span<const Motion> motions = {});
-
-enum class Preconditioner {
-  spectral,  ///< the corrected one of section 3.5
-  block,     ///< a loose GMRES solve of each self block
-};
 
 struct SuspensionSolve {
   std::vector<Motion> motions;

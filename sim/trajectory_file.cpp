@@ -286,14 +286,15 @@ void create_with_hdf5(const std::filesystem::path& draft, const std::vector<Data
   }
 }
 
-/// Makes sure that what HDF5 will write can be written, before there is anything to be undone.
+/// Makes sure that what HDF5 will write can be written, before there is anything to be undone. Throws std::system_error.
 void try_to_write(int file, std::uint64_t file_bytes, std::uint64_t first_bytes) {
-  if (::ftruncate(file, static_cast<off_t>(file_bytes)) != 0) throw errno;
+  if (::ftruncate(file, static_cast<off_t>(file_bytes)) != 0)
+    throw std::system_error(errno, std::generic_category());
   const std::vector<char> zeros(65536);
   for (std::uint64_t at = 0; at < first_bytes; at += zeros.size())
     if (const ssize_t done = ::pwrite(file, zeros.data(), zeros.size(), static_cast<off_t>(at));
         done != static_cast<ssize_t>(zeros.size()))
-      throw done < 0 ? errno : ENOSPC;
+      throw std::system_error(done < 0 ? errno : ENOSPC, std::generic_category());
 }
 
 }  // namespace
@@ -306,8 +307,8 @@ void create(const Draft& draft, const std::filesystem::path& path, const Traject
   try {
     try_to_write(draft.descriptor(), static_cast<std::uint64_t>(bytes) + metadata_bytes, metadata_bytes + header.scene.size());
     create_with_hdf5(draft.path(), all, layout, header);
-  } catch (const int reason) {
-    fail("create trajectory", path, reason);
+  } catch (const std::system_error& error) {
+    fail("create trajectory", path, error.code().value());
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("cannot create trajectory '{}': {}", path.string(), error.what()));
   }

@@ -3,6 +3,7 @@
 #include "dealias.h"
 #include "parallel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,63 +15,90 @@ FlowSource::Level level(Plans& plans, const FlowSource& source, int order) {
   const Basis& basis = plans.basis(source.position.order, order);
   FlowSource::Level l;
   l.sources = make_sources(basis, source.position);
-  l.force = basis.synthesize(source.densities.force).values;
-  if (source.viscosity_contrast != 1) l.dual = basis.synthesize(source.densities.dual).values;
+  l.densities.force = basis.synthesize(source.densities.force).values;
+  if (source.viscosity_contrast != 1) l.densities.dual = basis.synthesize(source.densities.dual).values;
   return l;
 }
 
-/// What one membrane contributes at one point.
-struct Contribution {
-  Vec3 velocity = Vec3::Zero();
-  double distance = std::numeric_limits<double>::infinity();
-  bool within = false;
-  bool on_membrane = false;  ///< velocity is then the membrane's own
+/// How points see one membrane.
+struct View {
+  std::vector<int> near;                                                            ///< by the near rule
+  std::array<std::vector<int>, std::tuple_size_v<decltype(FlowSource::finer)>> finer;  ///< by finer grids
+  std::vector<Vec3> start;                                                          ///< for the near ones: where to look
 };
 
-Contribution near_contribution(const FlowSource& source, const Vec3& x, const Vec3& start, const FlowFieldOptions& options) {
-  Contribution c;
-  const NearestPoint nearest = nearest_point(source.position, x, start);
-  c.distance = nearest.distance;
-  c.within = nearest.inside;
-  constexpr double touching = 1e-7;  // of the vesicle's size: nearer, the velocity is the membrane's to all digits wanted
-  if (nearest.distance < touching * (source.levels[0].sources.high - source.levels[0].sources.low).norm()) {
-    c.on_membrane = true;
-    c.velocity = sample_points(source.velocity, nearest.parameter.transpose()).row(0).transpose();
-    return c;
+/// The rest of a block of points sees the coarse grids.
+struct PointBlock {
+  Matrix points;
+  std::vector<View> views;     ///< by membrane
+  Vector distance;             ///< to the nearest membrane
+  std::vector<int> within;     ///< the vesicle that contains the point, -1 outside all
+  std::vector<std::pair<int, Vec3>> touching;  ///< points on a membrane, and its velocity there
+};
+
+/// Sorts points by how far they are from each membrane.
+PointBlock sorted(const FlowField& field, Matrix points) {
+  const int count = int(points.rows());
+  PointBlock block{std::move(points), std::vector<View>(field.sources.size()),
+                   Vector::Constant(count, std::numeric_limits<double>::infinity()), std::vector<int>(count, -1), {}};
+  for (std::size_t j = 0; j < field.sources.size(); ++j) {
+    const Sources& coarse = (*field.coarse)[j];
+    View& view = block.views[j];
+    for (int k = 0; k < count; ++k) {
+      const Vec3 x = block.points.row(k).transpose();
+      const auto [at, away] = nearest_source(coarse, x);
+      // The membrane may come nearer between source points: the nearest is at most half a diagonal of a cell off.
+      const double spacing = coarse.spacing[at], distance = away - 0.71 * spacing;
+      std::size_t halvings = 0;
+      while (halvings <= view.finer.size() && distance < field.options.spacings * std::ldexp(spacing, -int(halvings))) ++halvings;
+      if (halvings > view.finer.size()) {
+        view.near.push_back(k);
+        view.start.push_back(field.sources[j].directions.row(at).transpose());
+        continue;
+      }
+      if (halvings > 0) view.finer[halvings - 1].push_back(k);
+      block.distance[k] = std::min(block.distance[k], distance);
+      if ((x - coarse.points.row(at).transpose()).dot(coarse.normals.row(at)) < 0) block.within[k] = int(j);
+    }
   }
-  c.velocity = near_velocity(*source.rotation, source.position, x, nearest, options.near_order, source.densities.force,
-                             source.viscosity_contrast != 1 ? &source.densities.dual : nullptr);
-  return c;
+  return block;
 }
 
-/// Contributions of one membrane at all points: those that see it on one grid are summed together.
-std::vector<Contribution> contributions(const FlowSource& source, const Matrix& points, const FlowFieldOptions& options) {
-  std::vector<Contribution> all(points.rows());
-  std::array<std::vector<Eigen::Index>, std::tuple_size_v<decltype(FlowSource::levels)>> lists;
-  const Sources& coarse = source.levels[0].sources;
-  for (Eigen::Index k = 0; k < points.rows(); ++k) {
-    const Vec3 x = points.row(k).transpose();
-    const auto [at, away] = nearest_source(coarse, x);
-    // The membrane may come nearer between source points: the nearest is at most half a diagonal of a cell off.
-    const double spacing = coarse.spacing[at], distance = away - 0.71 * spacing;
-    std::size_t l = 0;
-    while (l < lists.size() && distance < options.spacings * std::ldexp(spacing, -static_cast<int>(l))) ++l;
-    if (l == lists.size()) {
-      all[k] = near_contribution(source, x, source.directions.row(at).transpose(), options);
+/// All points of a block that do not see the coarse grid of membrane j.
+std::vector<int> excluded(const View& view) {
+  std::vector<int> all = view.near;
+  for (const auto& list : view.finer) all.insert(all.end(), list.begin(), list.end());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// What membrane j makes at points near it, added to u.
+void add_near(const FlowField& field, int j, PointBlock& block, Matrix& u) {
+  const FlowSource& source = field.sources[j];
+  const View& view = block.views[j];
+  constexpr double touching = 1e-7;  // of the vesicle's size: nearer, the velocity is the membrane's to all digits wanted
+  const Box& box = (*field.coarse)[j].box;
+  for (std::size_t n = 0; n < view.near.size(); ++n) {
+    const int k = view.near[n];
+    const Vec3 x = block.points.row(k).transpose();
+    const NearestPoint nearest = nearest_point(source.position, x, view.start[n]);
+    block.distance[k] = std::min(block.distance[k], nearest.distance);
+    if (nearest.inside) block.within[k] = j;
+    if (nearest.distance < touching * (box.high - box.low).norm()) {
+      block.touching.emplace_back(k, sample_points(source.velocity, nearest.parameter.transpose()).row(0).transpose());
       continue;
     }
-    lists[l].push_back(k);
-    all[k].distance = distance;
-    all[k].within = (x - coarse.points.row(at).transpose()).dot(coarse.normals.row(at)) < 0;
+    u.row(k) += near_velocity(*source.rotation, source.position, x, nearest, field.options.near_order, source.densities.force,
+                              source.viscosity_contrast != 1 ? &source.densities.dual : nullptr)
+                    .transpose();
   }
-  for (std::size_t l = 0; l < lists.size(); ++l) {
-    if (lists[l].empty()) continue;
-    const FlowSource::Level& level = source.levels[l];
-    Matrix sum = Matrix::Zero(Eigen::Index(lists[l].size()), 3);
-    add_direct_sum(level.sources, level.force, level.dual.size() ? &level.dual : nullptr, points(lists[l], Eigen::seqN(0, 3)), sum);
-    for (std::size_t k = 0; k < lists[l].size(); ++k) all[lists[l][k]].velocity = sum.row(Eigen::Index(k)).transpose();
+  for (std::size_t l = 0; l < view.finer.size(); ++l) {
+    const std::vector<int>& list = view.finer[l];
+    if (list.empty()) continue;
+    Matrix sum = Matrix::Zero(Eigen::Index(list.size()), 3);
+    add_direct_sum(source.finer[l].sources, source.finer[l].densities, block.points(list, Eigen::seqN(0, 3)), sum);
+    for (std::size_t k = 0; k < list.size(); ++k) u.row(list[k]) += sum.row(Eigen::Index(k));
   }
-  return all;
 }
 
 }  // namespace
@@ -78,7 +106,8 @@ std::vector<Contribution> contributions(const FlowSource& source, const Matrix& 
 FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const FlowFieldOptions& options) {
   const int n = int(state.vesicles.size());
   const NumericsParameters& numerics = scene.numerics;
-  FlowField field{scene.flows, state.time, std::vector<FlowSource>(n), options};
+  FlowField field{scene.flows, state.time, std::vector<FlowSource>(n), {}, {}, options};
+  std::vector<Sources> coarse;
   std::vector<Material> materials;
   std::vector<Coefficients> positions;
   std::vector<AreaVolume> sizes;
@@ -95,13 +124,12 @@ FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const
     repelled = repulsion(plan_interaction(plans, positions, materials, interaction), numerics.repulsion_strength,
                          numerics.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes)));
   }
-  for (int i = 0; i < n; ++i) {  // the threads share the work inside
+  for (int i = 0; i < n; ++i) {
     const VesicleState& v = state.vesicles[i];
     const int p = v.position.order;
     const int rate = numerics.upsampling > 0 ? numerics.upsampling
                                              : upsampling_rate(plans, v.position, numerics.aliasing_tolerance);
-    const Membrane m = freeze_membrane(plans, materials[i], v.position, rate, numerics.source_order, {},
-                                       options.hold_spheres ? pinned[i] : std::nullopt);
+    const Sheet m = freeze_sheet(plans, materials[i], v.position, rate, {}, options.hold_spheres ? pinned[i] : std::nullopt);
     FlowSource& source = field.sources[i];
     source.position = v.position;
     source.velocity = v.velocity;
@@ -113,40 +141,51 @@ FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const
     if (!repelled.empty()) source.densities.force.values += repelled[i].values;
     source.densities.dual = dual_density(m.body, source.viscosity_contrast, v.velocity);
     source.rotation = &plans.rotation(p);
-    const int coarse = std::max(2 * p, 24);
-    source.directions = grid_directions(plans.basis(p, coarse));
-    parallel_for(int(source.levels.size()), [&](int k) { source.levels[k] = level(plans, source, coarse << k); });
+    const int order = std::max(2 * p, 24);
+    source.directions = grid_directions(plans.basis(p, order));
+    FlowSource::Level whole = level(plans, source, order);
+    coarse.push_back(std::move(whole.sources));
+    field.coarse_densities.push_back(std::move(whole.densities));
+    parallel_for(int(source.finer.size()), [&](int k) { source.finer[k] = level(plans, source, order << (k + 1)); });
   }
+  field.coarse = std::make_shared<const std::vector<Sources>>(std::move(coarse));
   return field;
 }
 
 FlowSamples velocity_at(const FlowField& field, const Matrix& points) {
-  const int count = int(points.rows());
+  const int count = int(points.rows()), n = int(field.sources.size());
   FlowSamples samples{background_velocity(field.flows, field.time, points), std::vector<int>(count, -1),
                       Vector::Constant(count, std::numeric_limits<double>::infinity())};
-  constexpr int block = 64;
-  parallel_for((count + block - 1) / block, [&](int b) {
-    const int first = b * block, size = std::min(count - first, block);
-    const Matrix here = points.middleRows(first, size);
-    Matrix u = samples.velocity.middleRows(first, size);
-    Vector contrast = Vector::Ones(size);
-    std::vector<std::pair<int, Vec3>> touching;
-    for (std::size_t j = 0; j < field.sources.size(); ++j) {
-      const std::vector<Contribution> all = contributions(field.sources[j], here, field.options);
-      for (int k = 0; k < size; ++k) {
-        if (all[k].on_membrane) touching.push_back({k, all[k].velocity});
-        u.row(k) += all[k].velocity.transpose();
-        samples.distance[first + k] = std::min(samples.distance[first + k], all[k].distance);
-        if (!all[k].within) continue;
-        const FlowSource& source = field.sources[j];
-        samples.within[first + k] = int(j);
-        contrast[k] = source.viscosity_contrast;
-        u.row(k) += (source.viscosity_contrast - 1) * source.rigid.at(here.row(k).transpose()).transpose();
+  if (n == 0) return samples;
+  constexpr int size = 64;
+  const int blocks = (count + size - 1) / size;
+  std::vector<PointBlock> all(blocks);
+  parallel_for(blocks, [&](int b) { all[b] = sorted(field, points.middleRows(b * size, std::min(count - b * size, size))); });
+  std::vector<TargetGroup> groups;
+  std::vector<Exclusion> exclusions;
+  for (int b = 0; b < blocks; ++b) {
+    groups.push_back({all[b].points, -1});
+    for (int j = 0; j < n; ++j)
+      if (std::vector<int> list = excluded(all[b].views[j]); !list.empty()) exclusions.push_back({b, j, std::move(list)});
+  }
+  FarField far = plan_far_field(field.coarse, std::move(groups));
+  exclude(far, std::move(exclusions));
+  const std::vector<Matrix> seen = far_velocity(far, field.coarse_densities);
+  parallel_for(blocks, [&](int b) {
+    PointBlock& block = all[b];
+    const int first = b * size;
+    Matrix u = samples.velocity.middleRows(first, block.points.rows()) + seen[b];
+    for (int j = 0; j < n; ++j) add_near(field, j, block, u);
+    for (int k = 0; k < int(block.points.rows()); ++k)
+      if (const int within = block.within[k]; within >= 0) {
+        const FlowSource& source = field.sources[within];
+        u.row(k) += (source.viscosity_contrast - 1) * source.rigid.at(block.points.row(k).transpose()).transpose();
+        u.row(k) /= source.viscosity_contrast;
       }
-    }
-    u.array().colwise() /= contrast.array();
-    for (const auto& [k, own] : touching) u.row(k) = own.transpose();
-    samples.velocity.middleRows(first, size) = u;
+    for (const auto& [k, own] : block.touching) u.row(k) = own.transpose();
+    samples.velocity.middleRows(first, u.rows()) = u;
+    samples.distance.segment(first, u.rows()) = block.distance;
+    std::copy(block.within.begin(), block.within.end(), samples.within.begin() + first);
   });
   return samples;
 }

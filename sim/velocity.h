@@ -3,9 +3,9 @@
 // With the force densities f_j of all membranes on the fluid and their velocities u_j, from the representation formula:
 //   c u(x) = u_inf(x) + sum_j { S_j[f_j](x) + (1 - lambda_j) D_j[u_j](x) },   c = 1 outside, lambda_k inside vesicle k
 // (D with the sign of layer_potentials.h: its factor for a rigid motion is -1 inside, 0 outside, and this part of u_j
-// is exact). Both sides converge to the membrane's own velocity. Far from a membrane the smooth rule is used, on the
-// coarsest of three source grids that is fine enough; nearer than some spacings of the finest grid, the near-singular
-// rule of near.h.
+// is exact). Both sides converge to the membrane's own velocity. Far from a membrane the smooth rule on a coarse grid is used
+// (far_field.h); nearer, in its place, the coarser of two finer grids that is fine enough, and within some spacings of the
+// finest the near-singular rule of near.h.
 #pragma once
 
 #include "suspension.h"
@@ -24,14 +24,14 @@ struct FlowFieldOptions {
 struct FlowSource {
   struct Level {
     Sources sources;
-    Matrix force, dual;  ///< samples at the sources; dual: (1 - lambda) u less its rigid part, empty for lambda = 1
+    SourceDensities densities;
   };
   Coefficients position, velocity;
   Densities densities;
   double viscosity_contrast = 1;
   RigidMotion rigid;            ///< of the velocity
   Matrix directions;  ///< parameters of the coarsest level's points, unit vectors
-  std::array<Level, 3> levels;  ///< from coarse to fine, each spacing half of the one before
+  std::array<Level, 2> finer;  ///< each spacing half of the one before, the first half of the coarse grid's
   const RotationPlan* rotation = nullptr;
 };
 
@@ -40,6 +40,8 @@ struct FlowField {
   std::vector<FlowParameters> flows;
   double time = 0;
   std::vector<FlowSource> sources;
+  std::shared_ptr<const std::vector<Sources>> coarse;  ///< of all membranes, for the far field
+  std::vector<SourceDensities> coarse_densities;
   FlowFieldOptions options;
 };
 /// Forces are computed as the stepper does: bending, tension, buoyancy and repulsion of the scene.

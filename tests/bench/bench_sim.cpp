@@ -135,10 +135,11 @@ void direct_sum(benchmark::State& state) {
   s.points = Matrix::Random(count, 3);
   s.normals = Matrix::Random(count, 3);
   s.area = Vector::Ones(count);
-  const Matrix force = Matrix::Random(count, 3), dual = Matrix::Random(count, 3);
+  SourceDensities densities{Matrix::Random(count, 3), {}};
+  if (state.range(0)) densities.dual = Matrix::Random(count, 3);
   const Matrix targets = (Matrix::Random(count, 3).array() + 5).matrix();
   Matrix velocity = Matrix::Zero(count, 3);
-  for (auto _ : state) add_direct_sum(s, force, state.range(0) ? &dual : nullptr, targets, velocity);
+  for (auto _ : state) add_direct_sum(s, densities, targets, velocity);
   state.counters["pairs"] = benchmark::Counter(double(count * count), benchmark::Counter::kIsIterationInvariantRate);
 }
 
@@ -170,10 +171,11 @@ void suspension_product(benchmark::State& state) {
   }
   const Interaction w = plan_interaction(plans, x, s.materials, {});
   double pairs = 0;
-  for (std::size_t i = 0; i < x.size(); ++i)
+  for (const TargetGroup& group : w.far.groups)
     for (std::size_t j = 0; j < x.size(); ++j)
-      pairs += double(w.pairs[i][j].coarse.size()) * double(w.coarse_sources[j].area.size()) +
-               double(w.pairs[i][j].fine.size()) * double(w.sources[j].area.size());
+      if (int(j) != group.surface) pairs += double(group.points.rows()) * double((*w.far.sources)[j].area.size());
+  for (const PairPlan& pair : w.pairs)
+    pairs += double(pair.fine.size()) * (double(w.sources[pair.source].area.size()) - double((*w.far.sources)[pair.source].area.size()));
   for (auto _ : state) benchmark::DoNotOptimize(induced_velocity(w, densities));
   state.counters["pairs"] = benchmark::Counter(pairs, benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -1,3 +1,4 @@
+#include "sim/gap.h"
 #include "sim/placements.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
