@@ -1,6 +1,6 @@
 // tanktread: lipid vesicles in Stokes flow, from a scene to a movie.
-#include "cli.h"
-#include "processor.h"
+#include "app/commands/cli.h"
+#include "app/base/processor.h"
 
 #if defined(__x86_64__)
 #include <unistd.h>

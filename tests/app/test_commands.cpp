@@ -1,7 +1,7 @@
 // The program as a user meets it: exit statuses, messages, and what is left on the disk.
 #include "desk.h"
-#include "sim/digits.h"
-#include "sim/trajectory.h"
+#include "sim/core/digits.h"
+#include "sim/trajectory/trajectory.h"
 #include "tests/support/catch.h"
 
 using Catch::Contains;

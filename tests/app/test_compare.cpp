@@ -1,6 +1,6 @@
 // `tanktread compare` as a project's CI meets it.
-#include "app/printable.h"
-#include "render/compare.h"
+#include "app/base/printable.h"
+#include "render/image/difference.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
 

@@ -1,7 +1,7 @@
 // Figures from the command line: every kind from a real trajectory, sizes, themes, and what is refused.
-#include "app/quantities.h"
-#include "render/figure.h"
-#include "render/image.h"
+#include "app/tables/quantities.h"
+#include "render/figures/figure.h"
+#include "render/image/image.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
 

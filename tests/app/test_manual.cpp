@@ -1,7 +1,7 @@
 // The manual page and the completion of the shell tell all that the command line takes.
-#include "app/catalogues.h"
-#include "app/commands.h"
-#include "app/reference.h"
+#include "app/scene/catalogues.h"
+#include "app/commands/commands.h"
+#include "app/export/reference.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
 

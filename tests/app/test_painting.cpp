@@ -1,10 +1,10 @@
 // The range of a field that was not given follows the values of the whole movie.
-#include "app/fields.h"
-#include "app/pictures.h"
-#include "app/scene_file.h"
-#include "app/streamlines.h"
+#include "app/pictures/painting.h"
+#include "app/pictures/pictures.h"
+#include "app/scene/scene_file.h"
+#include "app/pictures/flow_picture.h"
 
-#include "sim/simulate.h"
+#include "sim/stepping/simulate.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

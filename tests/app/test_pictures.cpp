@@ -1,13 +1,13 @@
 // `tanktread render` and what `run` draws: frames, movies, stills and what stands on them.
-#include "app/captions.h"
-#include "app/folder_lock.h"
-#include "app/pictures.h"
-#include "app/scene_file.h"
+#include "app/pictures/captions.h"
+#include "app/base/folder_lock.h"
+#include "app/pictures/pictures.h"
+#include "app/scene/scene_file.h"
 #include "desk.h"
-#include "render/image.h"
-#include "render/section.h"
-#include "sim/simulate.h"
-#include "sim/trajectory.h"
+#include "render/image/image.h"
+#include "render/scene/section.h"
+#include "sim/stepping/simulate.h"
+#include "sim/trajectory/trajectory.h"
 #include "tests/support/catch.h"
 
 #include <fcntl.h>

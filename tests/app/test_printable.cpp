@@ -1,5 +1,5 @@
 // Texts from elsewhere do nothing to a terminal, a line or a report.
-#include "app/printable.h"
+#include "app/base/printable.h"
 #include "tests/support/catch.h"
 
 using app::printable;

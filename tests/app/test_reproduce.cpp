@@ -1,9 +1,9 @@
 // The tables and figures of the paper, at their quickest: each runs, writes its files, and says what is true.
-#include "app/reproduce_items.h"
-#include "app/scene_file.h"
-#include "app/scene_text.h"
-#include "sim/basis.h"
-#include "sim/shapes.h"
+#include "app/reproduce/reproduce_items.h"
+#include "app/scene/scene_file.h"
+#include "app/scene/scene_text.h"
+#include "sim/sphere/basis.h"
+#include "sim/surface/shapes.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
 

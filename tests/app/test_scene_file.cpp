@@ -1,7 +1,7 @@
 // Scene files: what is right is read, what is wrong is told with file, line, column and the nearest good word.
-#include "app/frames.h"
-#include "app/scene_file.h"
-#include "app/scene_text.h"
+#include "app/pictures/frames.h"
+#include "app/scene/scene_file.h"
+#include "app/scene/scene_text.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

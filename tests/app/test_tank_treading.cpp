@@ -1,6 +1,6 @@
 // What the figure of tank-treading is made of.
-#include "app/tank_treading.h"
-#include "sim/shapes.h"
+#include "app/figures/tank_treading.h"
+#include "sim/surface/shapes.h"
 #include "tests/support/catch.h"
 
 #include <cmath>

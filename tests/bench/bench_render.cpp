@@ -1,7 +1,7 @@
 // Cost of one frame and of its parts. The limit: 220 ms of processor time for two vesicles at 1080p, opaque, from the saved
 // state to the PNG file.
-#include "render/depth_order.h"
-#include "render/draw.h"
+#include "render/draw/depth_order.h"
+#include "render/draw/draw.h"
 
 #include "tests/render/surfaces.h"
 

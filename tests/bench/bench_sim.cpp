@@ -1,6 +1,6 @@
 // Cost of the parts of a step and of the whole. The limits: a step of one vesicle with viscosity contrast 10 takes at most
 // 5 ms at order 8 and 80 ms at order 16, on one core.
-#include "sim/placements.h"
+#include "sim/suspension/placements.h"
 #include "tests/sim/surfaces.h"
 
 #include <benchmark/benchmark.h>

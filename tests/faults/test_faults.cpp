@@ -1,8 +1,8 @@
 // Faults other than kills: full disks, closed doors, damaged and foreign files, missing helpers. Nothing is lost, nothing is
 // left half-written, and one sentence says what is wrong.
 #include "desk.h"
-#include "render/image.h"
-#include "sim/trajectory.h"
+#include "render/image/image.h"
+#include "sim/trajectory/trajectory.h"
 #include "tests/support/catch.h"
 
 #include <csignal>

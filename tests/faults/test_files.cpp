@@ -1,7 +1,7 @@
 // Files of other people: never overwritten, never deleted, never written through a link that lies in a folder of results.
 #include "desk.h"
-#include "render/image.h"
-#include "sim/trajectory.h"
+#include "render/image/image.h"
+#include "sim/trajectory/trajectory.h"
 #include "tests/support/catch.h"
 
 #include <csignal>

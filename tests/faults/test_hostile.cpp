@@ -1,7 +1,7 @@
 // Files that somebody else has made or changed: each is refused in one sentence, or read for what it is.
 #include "desk.h"
-#include "sim/dynamics.h"
-#include "sim/trajectory_file.h"
+#include "sim/stepping/dynamics.h"
+#include "sim/trajectory/trajectory_file.h"
 #include "tests/support/hostile_hdf5.h"
 
 #include <sys/stat.h>

@@ -1,7 +1,7 @@
 // kill -9 at random moments: what was reported stays, and what comes in the end is the same to the last bit.
 #include "desk.h"
-#include "render/image.h"
-#include "sim/trajectory.h"
+#include "render/image/image.h"
+#include "sim/trajectory/trajectory.h"
 #include "tests/support/catch.h"
 
 #include <csignal>

@@ -3,7 +3,7 @@
 //
 // TANKTREAD_KILLS sets how many kills there are in all; a few minutes' worth without it (docs/faults.md has the long form).
 #include "desk.h"
-#include "render/image.h"
+#include "render/image/image.h"
 #include "tests/support/catch.h"
 
 #include <csignal>

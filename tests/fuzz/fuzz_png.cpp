@@ -1,6 +1,6 @@
 // The PNG reader: a picture of the promised size, or a sentence. Checksums of the chunks are made to fit after each mutation,
 // or hardly any would get beyond them.
-#include "render/image.h"
+#include "render/image/image.h"
 #include "support.h"
 
 #include <zlib.h>

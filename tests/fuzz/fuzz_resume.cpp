@@ -1,7 +1,7 @@
 // Resume records whose checksum fits. The input is a list of changes to the numbers of a whole one, most of them to those that
 // are counts and sizes. What is accepted is written again as it was, and a step can be taken from it or is refused.
-#include "sim/dynamics.h"
-#include "sim/stepper.h"
+#include "sim/stepping/dynamics.h"
+#include "sim/stepping/stepper.h"
 #include "support.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // Scene files: text, then, after a NUL, one `--set`. What is accepted must write itself as a scene that means the same.
-#include "app/scene_file.h"
-#include "app/scene_text.h"
+#include "app/scene/scene_file.h"
+#include "app/scene/scene_text.h"
 #include "support.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {

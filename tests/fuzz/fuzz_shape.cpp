@@ -1,5 +1,5 @@
 // Text tables of shapes. What is accepted is a surface of finite numbers.
-#include "sim/shapes.h"
+#include "sim/surface/shapes.h"
 #include "support.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // Trajectory files: header and layout as HDF5 tells them, then every row. Checksums of the metadata are made to fit after
 // each mutation, or hardly any would get beyond them; those of states, steps and resume records for half of the inputs.
 // Besides bytes, types, extents, storage and links of a whole trajectory are changed by HDF5 itself.
-#include "sim/dynamics.h"
-#include "sim/trajectory_file.h"
+#include "sim/stepping/dynamics.h"
+#include "sim/trajectory/trajectory_file.h"
 #include "support.h"
 #include "tests/support/hostile_hdf5.h"
 #include "tests/support/temporary_folder.h"

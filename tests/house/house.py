@@ -9,22 +9,20 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 MODULES = ["sim", "render", "app"]
 # What the pictures may know of the simulation: values and how they are sampled, never operators or steppers.
-RENDER_SEES = {"sim/types.h", "sim/basis.h", "sim/legendre.h", "sim/geometry.h", "sim/parameters.h", "sim/catalogue.h", "sim/trajectory.h",
-               "sim/result_file.h", "sim/input_file.h", "sim/digits.h"}
-HDF5_FILES = re.compile(r"sim/trajectory\w*\.(h|cpp)$")
-GL_FILES = re.compile(r"render/context\w*\.(h|cpp)$")
+RENDER_SEES = {"sim/core", "sim/trajectory/trajectory.h", "sim/sphere/basis.h", "sim/sphere/legendre.h", "sim/surface/geometry.h"}
+HDF5_FILES = re.compile(r"sim/trajectory/")
+GL_FILES = re.compile(r"render/gl/context\w*\.(h|cpp)$")
 GL_WORDS = re.compile(r"\bOSMesa[A-Z]\w*|\begl[A-Z]\w*\s*\(|<EGL/|<GL/osmesa")
 
 
 def listed_files(module):
-    """Files of a module in the order of its CMakeLists.txt."""
-    text = (ROOT / module / "CMakeLists.txt").read_text()
-    body = re.search(r"add_library\(\w+ STATIC\s(.*?)\)", text, re.S).group(1)
-    body = re.sub(r"#.*", "", body)
-    files = [word for word in body.split() if re.fullmatch(r"\w+\.(h|cpp)", word)]
-    if module == "app":
-        files.append("main.cpp")
-    return files
+    """Files of a module in reading order, that of its folders and then of their lists: "sim/core/types.h", ..."""
+    files = []
+    for folder in re.findall(r"add_subdirectory\((\w+)\)", (ROOT / module / "CMakeLists.txt").read_text()):
+        text = (ROOT / module / folder / "CMakeLists.txt").read_text()
+        body = re.sub(r"#.*", "", re.search(r"target_sources\(\w+ PRIVATE\s(.*?)\)", text, re.S).group(1))
+        files += [f"{module}/{folder}/{word}" for word in body.split() if re.fullmatch(r"\w+\.(h|cpp)", word)]
+    return files + (["app/main.cpp"] if module == "app" else [])
 
 
 def includes(path):
@@ -33,28 +31,34 @@ def includes(path):
 
 def layering():
     findings = []
+    order = {}
     for module in MODULES:
-        files = listed_files(module)
-        order = {name: place for place, name in enumerate(files)}
-        present = {p.name for p in (ROOT / module).glob("*") if p.suffix in (".h", ".cpp")}
-        findings += [f"{module}/{name} is not listed in {module}/CMakeLists.txt" for name in sorted(present - set(files))]
-        findings += [f"{module}/CMakeLists.txt lists {name}, which does not exist" for name in files if name not in present]
-        for name in sorted(present & set(files)):
-            where = f"{module}/{name}"
-            path = ROOT / module / name
-            for include in includes(path):
-                if include in order and order[include] > order[name]:
-                    findings.append(f"{where} includes {include}, which stands below it in {module}/CMakeLists.txt")
-                folder = include.split("/")[0]
-                if folder in MODULES and MODULES.index(folder) > MODULES.index(module):
-                    findings.append(f"{where} includes {include}: {module} must not know {folder}")
-                if module == "render" and folder == "sim" and include not in RENDER_SEES:
-                    findings.append(f"{where} includes {include}: pictures see only {', '.join(sorted(RENDER_SEES))}")
-                if include == "hdf5.h" and not HDF5_FILES.match(where):
-                    findings.append(f"{where} includes hdf5.h, which only the trajectory may")
-            words = GL_WORDS.search(path.read_text())
-            if words and not GL_FILES.match(where):
-                findings.append(f"{where} mentions '{words.group(0)}', which only render/context* may")
+        for name in listed_files(module):
+            order[name] = len(order)
+        present = {str(p.relative_to(ROOT)) for p in (ROOT / module).rglob("*") if p.suffix in (".h", ".cpp")}
+        listed = {name for name in order if name.startswith(module + "/")}
+        findings += [f"{name} is not listed in the CMakeLists.txt of its folder" for name in sorted(present - listed)]
+        findings += [f"a list of {module} names {name}, which does not exist" for name in sorted(listed - present)]
+    for name in order:
+        if not (ROOT / name).exists():
+            continue
+        module = name.split("/")[0]
+        text = (ROOT / name).read_text()
+        for include in includes(ROOT / name):
+            if include in order and order[include] > order[name]:
+                findings.append(f"{name} includes {include}, which stands below it")
+            if include.split("/")[0] in MODULES and include not in order:
+                findings.append(f"{name} includes {include}, which does not exist")
+            if "/" not in include and (ROOT / name).parent.joinpath(include).exists():
+                findings.append(f"{name} includes {include} without its folder")
+            seen = include in RENDER_SEES or include.rsplit("/", 1)[0] in RENDER_SEES
+            if module == "render" and include.startswith("sim/") and not seen:
+                findings.append(f"{name} includes {include}: pictures see only {', '.join(sorted(RENDER_SEES))}")
+            if include == "hdf5.h" and not HDF5_FILES.match(name):
+                findings.append(f"{name} includes hdf5.h, which only the trajectory may")
+        words = GL_WORDS.search(text)
+        if words and not GL_FILES.match(name):
+            findings.append(f"{name} mentions '{words.group(0)}', which only render/gl/context* may")
     return findings + frameworks()
 
 

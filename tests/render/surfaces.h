@@ -1,12 +1,12 @@
 // Surfaces with known shapes, as states of a vesicle.
 #pragma once
 
-#include "render/compare.h"
-#include "render/cutaway.h"
-#include "render/mesh.h"
-#include "render/parameters.h"
-#include "render/scene.h"
-#include "sim/basis.h"
+#include "render/image/difference.h"
+#include "render/scene/cutaway.h"
+#include "render/scene/mesh.h"
+#include "render/core/parameters.h"
+#include "render/scene/frame.h"
+#include "sim/sphere/basis.h"
 
 #include <cmath>
 #include <functional>

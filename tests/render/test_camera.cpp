@@ -1,5 +1,5 @@
 // Where pictures are seen from, and how a movie is framed.
-#include "render/camera.h"
+#include "render/scene/camera.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,6 +1,6 @@
 // When two pictures are the same, by the rule for our own goldens and by FLIP.
-#include "render/compare.h"
-#include "render/flip.h"
+#include "render/image/difference.h"
+#include "render/image/flip.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"

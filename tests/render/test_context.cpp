@@ -1,8 +1,8 @@
 // OpenGL without a window.
-#include "render/context.h"
-#include "render/context_back_ends.h"
-#include "render/draw.h"
-#include "render/style.h"
+#include "render/gl/context.h"
+#include "render/gl/context_back_ends.h"
+#include "render/draw/draw.h"
+#include "render/core/style.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,6 +1,6 @@
 // What the rule for pictures notices: 29 small defects of two vesicles with their captions, in two sizes.
 // TANKTREAD_PICTURES=FOLDER keeps the pictures; tests/studies/confusion.py makes the table of docs/ci.md of them.
-#include "render/draw.h"
+#include "render/draw/draw.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,7 +1,7 @@
 // Colour maps, colour bars, and that what is painted can be read off them.
-#include "render/colour_bar.h"
-#include "render/draw.h"
-#include "render/style.h"
+#include "render/overlay/colour_bar.h"
+#include "render/draw/draw.h"
+#include "render/core/style.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,7 +1,7 @@
 // Figures and their files.
-#include "render/figure.h"
-#include "render/image.h"
-#include "render/plot_marks.h"
+#include "render/figures/figure.h"
+#include "render/image/image.h"
+#include "render/figures/plot_marks.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

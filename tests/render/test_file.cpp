@@ -1,6 +1,6 @@
 // The one function that puts files of results on the disk.
-#include "render/canvas.h"
-#include "sim/result_file.h"
+#include "render/figures/canvas.h"
+#include "sim/core/result_file.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // Pictures in memory and in PNG files.
-#include "render/image.h"
+#include "render/image/image.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"

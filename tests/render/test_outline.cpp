@@ -1,6 +1,6 @@
 // The outline lies on the membrane: between the two there is no ground, whatever their sizes.
-#include "render/depth_order.h"
-#include "render/draw.h"
+#include "render/draw/depth_order.h"
+#include "render/draw/draw.h"
 
 #include "surfaces.h"
 

@@ -1,6 +1,6 @@
 // What is drawn of membranes, measured against geometry.
-#include "render/draw.h"
-#include "render/style.h"
+#include "render/draw/draw.h"
+#include "render/core/style.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,6 +1,6 @@
 // Plane sections of spectral surfaces, and moments of the volume inside.
-#include "render/section.h"
-#include "render/surface.h"
+#include "render/scene/section.h"
+#include "render/scene/surface.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

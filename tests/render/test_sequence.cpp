@@ -1,8 +1,8 @@
 // Frames between saved states.
-#include "render/sequence.h"
+#include "render/scene/sequence.h"
 
-#include "render/mesh.h"
-#include "render/surface.h"
+#include "render/scene/mesh.h"
+#include "render/scene/surface.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

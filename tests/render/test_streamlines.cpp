@@ -1,5 +1,5 @@
 // Evenly spaced streamlines of flows whose lines are known.
-#include "render/streamlines.h"
+#include "render/figures/streamlines.h"
 #include "tests/support/catch.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // What is drawn around membranes: the flow and the captions.
-#include "render/draw.h"
+#include "render/draw/draw.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,5 @@
 // Pictures know no unit of length and no place: the same scene in metres, in micrometres or far from the origin looks the same.
-#include "render/draw.h"
+#include "render/draw/draw.h"
 
 #include "surfaces.h"
 

@@ -1,9 +1,9 @@
 // Surfaces and fields that the tests of sim share.
 #pragma once
 
-#include "sim/membrane.h"
-#include "sim/shapes.h"
-#include "sim/stepper.h"
+#include "sim/membrane/membrane.h"
+#include "sim/surface/shapes.h"
+#include "sim/stepping/stepper.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
 // Fields of a membrane against spheres, ellipsoids and rigid motions.
-#include "sim/fields.h"
+#include "sim/measures/fields.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

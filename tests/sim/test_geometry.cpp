@@ -1,5 +1,5 @@
-#include "sim/correction.h"
-#include "sim/dealias.h"
+#include "sim/surface/correction.h"
+#include "sim/surface/dealias.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 

@@ -1,5 +1,5 @@
 // The state of a vesicle and its past: whoever changes the grid, the shape or the file must take all of it along.
-#include "sim/simulate.h"
+#include "sim/stepping/simulate.h"
 #include "../support/temporary_folder.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,5 @@
-#include "sim/gap.h"
-#include "sim/placements.h"
+#include "sim/suspension/gap.h"
+#include "sim/suspension/placements.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 

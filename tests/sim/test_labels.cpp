@@ -1,4 +1,4 @@
-#include "sim/near.h"
+#include "sim/layers/near.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

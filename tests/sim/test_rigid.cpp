@@ -1,7 +1,7 @@
 // What must be exact: rigid motions, spheres, and units.
-#include "sim/flows.h"
-#include "sim/stepper.h"
-#include "sim/velocity.h"
+#include "sim/membrane/flows.h"
+#include "sim/stepping/stepper.h"
+#include "sim/suspension/velocity.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 

@@ -1,4 +1,4 @@
-#include "sim/simulate.h"
+#include "sim/stepping/simulate.h"
 #include "../support/temporary_folder.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"

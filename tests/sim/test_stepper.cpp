@@ -1,4 +1,4 @@
-#include "sim/gmres.h"
+#include "sim/membrane/gmres.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 

@@ -1,7 +1,7 @@
 // Flows that change with time: switches, pulses, oscillations, and flows that do nothing.
 #include "../support/temporary_folder.h"
-#include "sim/flows.h"
-#include "sim/simulate.h"
+#include "sim/membrane/flows.h"
+#include "sim/stepping/simulate.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 

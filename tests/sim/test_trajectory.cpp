@@ -1,5 +1,5 @@
 // The trajectory file: what goes in comes out, and nothing that was reported is ever lost.
-#include "sim/trajectory.h"
+#include "sim/trajectory/trajectory.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // The velocity between and inside of the membranes against closed forms, and against the membranes' own velocity.
-#include "sim/velocity.h"
+#include "sim/suspension/velocity.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,0 +1,122 @@
+// Commands that only look: info, export, list.
+#include "app/scene/catalogues.h"
+#include "app/commands/commands.h"
+#include "app/export/csv.h"
+#include "app/pictures/frames.h"
+#include "app/base/interrupt.h"
+#include "app/base/message.h"
+#include "app/export/mesh_export.h"
+#include "app/scene/output.h"
+#include "app/base/owned_files.h"
+#include "app/base/printable.h"
+#include "app/base/progress.h"
+#include "app/export/reference.h"
+#include "app/scene/scene_file.h"
+#include "app/export/summary.h"
+
+#include "sim/core/input_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace app {
+
+int info(const Options& options) {
+  const std::filesystem::path& path = options.inputs.front();
+  if (std::filesystem::is_directory(path))
+    throw std::runtime_error(fmt::format("'{}' is a folder; give a trajectory, a scene or a frame in it", path.string()));
+  if (!std::filesystem::exists(path)) throw std::runtime_error(fmt::format("there is no file '{}'", path.string()));
+  std::string why;
+  std::ifstream in = sim::open_input(path, why);
+  if (!in) throw std::runtime_error(fmt::format("cannot read '{}': {}", path.string(), why));
+  std::string start(8, '\0');
+  start.resize(static_cast<std::size_t>(in.read(start.data(), 8).gcount()));
+  // A beginning alone is told to be one.
+  const auto begins = [&start](std::string_view signature) { return start.size() > 1 && signature.starts_with(start); };
+  if (begins("\211HDF\r\n\032\n")) fmt::print("{}", trajectory_summary(path));
+  else if (begins("\211PNG\r\n\032\n")) fmt::print("{}", picture_summary(path));
+  else fmt::print("{}", scene_summary(read_scene(path, options.set)));
+  return 0;
+}
+
+namespace {
+
+/// Numbers of the states to write, the second not among them: all, or the one nearest to a time.
+std::pair<std::int64_t, std::int64_t> chosen_states(const sim::TrajectoryReader& trajectory, std::optional<double> time) {
+  if (!time) return {0, trajectory.count()};
+  require_time(*time, trajectory.count() > 0 ? trajectory.time(trajectory.count() - 1) : std::nan(""));
+  std::int64_t nearest = 0;
+  for (std::int64_t k = 1; k < trajectory.count(); ++k)
+    if (std::abs(trajectory.time(k) - *time) < std::abs(trajectory.time(nearest) - *time)) nearest = k;
+  return {nearest, nearest + 1};
+}
+
+}  // namespace
+
+int export_states(const Options& options) {
+  if (options.csv.empty() && options.vtk.empty() && options.ply.empty())
+    throw std::runtime_error("say what to write: --csv FILE, --vtk DIR or --ply DIR");
+  const sim::TrajectoryReader trajectory(options.inputs.front());
+  const auto [first, end] = chosen_states(trajectory, options.time);
+  ResultFiles files(options.inputs, options.force);
+  // Before the first of them is written.
+  if (!options.csv.empty()) files.require(options.csv);
+  if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_series);
+  for (std::int64_t k = first; k < end; ++k) {
+    if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_name(k));
+    for (int v = 0; !options.ply.empty() && v < trajectory.layout().vesicles; ++v)
+      files.require_inside(options.ply / ply_name(static_cast<std::size_t>(v), k));
+  }
+  if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory, first, end));
+  struct Kind {
+    const std::filesystem::path& folder;
+    std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
+  };
+  for (const auto& [folder, write] : {Kind{options.vtk, export_vtk}, Kind{options.ply, export_ply}}) {
+    if (folder.empty()) continue;
+    Progress progress("exporting", options.quiet);
+    const std::int64_t states = write(trajectory, {folder, first, end, options.latitudes}, files.writer_inside(), [&](std::int64_t k, std::int64_t count) {
+      progress.show(static_cast<double>(k) / static_cast<double>(count), fmt::format("state {} of {}", k + 1, count));
+      return !interrupted();
+    });
+    progress.clear();
+    if (states < end - first) {
+      files.settle();
+      tell(fmt::format("interrupted; {} of {} states are in '{}'", states, end - first, folder.string()));
+      return interrupted_status;
+    }
+    if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", printable(folder.string()), states);
+  }
+  files.settle();
+  return 0;
+}
+
+int list(const Options& options) {
+  if (options.markdown && options.word != "parameters")
+    throw std::runtime_error("--markdown goes with 'list parameters'");
+  if (options.word == "parameters") {
+    fmt::print("{}", options.markdown ? reference_page() : parameter_list());
+    return 0;
+  }
+  std::vector<std::string_view> names;
+  for (const Catalogue& catalogue : catalogues()) {
+    names.push_back(catalogue.name);
+    if (options.word.empty()) fmt::print("{:<12} {}\n", catalogue.name, catalogue.meaning);
+    if (options.word != catalogue.name) continue;
+    for (const auto& row : catalogue.rows) {
+      std::string keys;
+      for (const std::string_view key : row.keys) keys += fmt::format("{}{}", keys.empty() ? "; keys: " : ", ", key);
+      fmt::print("{:<20} {}{}\n", row.name, row.meaning, keys);
+    }
+    return 0;
+  }
+  names.push_back("parameters");
+  if (!options.word.empty())
+    throw std::runtime_error(fmt::format("'{}' is not a catalogue{}", options.word, sim::suggestion(options.word, names)));
+  fmt::print("{:<12} {}\n", "parameters", "every key of a scene file");
+  return 0;
+}
+
+}  // namespace app

@@ -1,0 +1,265 @@
+#include "app/pictures/frames.h"
+
+#include "app/base/interrupt.h"
+#include "app/pictures/movie.h"
+#include "app/scene/output.h"
+#include "app/base/printable.h"
+#include "app/base/progress.h"
+#include "app/base/version.h"
+
+#include "sim/core/digits.h"
+
+#include <fmt/format.h>
+
+#include <stdlib.h>
+
+#include <cmath>
+#include <future>
+
+namespace app {
+
+namespace fs = std::filesystem;
+
+std::int64_t frame_count(double end, double time_per_frame) {
+  const double frames = std::floor(end / time_per_frame * (1 + 1e-12)) + 1;
+  if (!(frames <= most_frames + 1))
+    throw std::invalid_argument(fmt::format("{:.3g} frames are too many; movie.time_per_frame must be longer", frames));
+  return static_cast<std::int64_t>(frames);
+}
+
+std::vector<double> frame_times(const sim::TrajectoryReader& trajectory, const render::MovieParameters& movie) {
+  std::vector<double> times;
+  const std::int64_t states = trajectory.count();
+  if (movie.time_per_frame > 0) {
+    const double end = trajectory.time(states - 1);
+    const std::int64_t frames = frame_count(end, movie.time_per_frame);
+    for (std::int64_t f = 0; f < frames; ++f)
+      times.push_back(std::min(end, static_cast<double>(f) * movie.time_per_frame));
+  } else {
+    for (std::int64_t k = 0; k < states; ++k) times.push_back(trajectory.time(k));
+  }
+  return times;
+}
+
+namespace {
+
+constexpr const char* hash_key = "tanktread:hash";
+
+/// Is this file a whole picture of the same frame?
+bool is_current(const fs::path& path, const std::string& hash) {
+  if (!fs::exists(path)) return false;
+  try {
+    for (const auto& [key, text] : render::read_png_text(path))
+      if (key == hash_key) return text == hash;
+  } catch (const std::exception&) {
+    // damaged: draw it again
+  }
+  return false;
+}
+
+double end_of(const PictureSource& source) { return source.trajectory.time(source.trajectory.count() - 1); }
+
+const PictureSource& longest(const std::vector<PictureSource>& sources) {
+  return *std::max_element(sources.begin(), sources.end(),
+                           [](const PictureSource& a, const PictureSource& b) { return end_of(a) < end_of(b); });
+}
+
+render::PngText picture_text(const PictureSource& source, const Studio& studio, double time, const std::string& hash) {
+  render::PngText text{{"Title", printable(source.settings.scene.title)},
+                       {"Software", "tanktread " + version()},
+                       {"tanktread:time", fmt::format("{:.12g}", time)},
+                       {hash_key, hash}};
+  for (const auto& entry : studio.renderer.metadata()) text.push_back(entry);
+  return text;
+}
+
+std::string hash_of(const Production& production, double time) { return fmt::format("{}-{:.17g}", production.hash, time); }
+
+/// The numbers of the frames that this process draws, and what becomes of them.
+struct Task {
+  std::size_t number;
+  bool current;
+};
+
+std::vector<Task> tasks_of(const Production& production, const std::vector<double>& times, OwnedFiles& files,
+                           const Options& options) {
+  std::vector<Task> tasks;
+  for (auto f = static_cast<std::size_t>(options.shard); f < times.size(); f += static_cast<std::size_t>(options.shards)) {
+    files.require(frame_name(f));
+    const bool current =
+        options.shader_dir.empty() && is_current(files.folder() / frame_name(f), hash_of(production, times[f]));
+    if (current && !files.listed(frame_name(f))) files.adopt(frame_name(f));
+    tasks.push_back({f, current});
+  }
+  return tasks;
+}
+
+std::string movie_record(const Production& production, std::size_t frames, const render::MovieParameters& settings,
+                         const fs::path& movie) {
+  return fmt::format("{} frames at {:.17g} a second, {} bytes, {}\n", frames, settings.frame_rate, fs::file_size(movie),
+                     production.hash);
+}
+
+bool is_current_movie(const OwnedFiles& files, const std::string& movie, const Production& production, std::size_t frames,
+                      const render::MovieParameters& settings) {
+  const fs::path path = files.folder() / movie, record = files.folder() / record_of_movie(movie);
+  return fs::exists(path) && fs::exists(record) &&
+         read_whole_file(record) == movie_record(production, frames, settings, path);
+}
+
+void remove_movie(OwnedFiles& files, const std::string& movie) {
+  files.remove(record_of_movie(movie));
+  files.remove(movie);
+}
+
+/// A copy of the frame nearest to `wanted`.
+fs::path write_poster(OwnedFiles& files, const std::vector<double>& times, double wanted) {
+  const auto nearest = std::min_element(times.begin(), times.end(),
+                                        [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
+  const std::string frame = read_whole_file(files.folder() / frame_name(static_cast<std::size_t>(nearest - times.begin())));
+  const fs::path poster = files.folder() / poster_name;
+  if (!fs::exists(poster) || read_whole_file(poster) != frame) files.write(poster_name, frame);
+  else if (!files.listed(poster_name)) files.adopt(poster_name);
+  return poster;
+}
+
+/// The movie under way; a failure of ffmpeg ends it, not the frames.
+struct Film {
+  std::optional<MovieEncoder> encoder;
+  FrameReport& report;
+
+  template <class Action>
+  void attempt(const Action& action) {
+    if (!encoder) return;
+    try {
+      action();
+    } catch (const std::exception& failure) {
+      report.remark = failure.what();
+      report.movie_failed = true;
+      encoder.reset();
+    }
+  }
+};
+
+}  // namespace
+
+void require_time(double time, double end) {
+  if (time >= 0 && time <= end * (1 + 1e-9)) return;
+  const auto [last, wanted] = sim::told_apart(end, time, 6);
+  throw std::invalid_argument(fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {}", last, wanted));
+}
+
+FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
+  const Settings& settings = sources.front().settings;
+  const MovieFormat& format = find_movie_format(settings.movie.format);
+  const std::string name = movie_name(format);
+  const fs::path frames = files.folder() / "frames", movie = files.folder() / name;
+  if (options.shards == 1) check_movie(format, settings.view.size[0], settings.view.size[1]);
+  const Production production = prepare_pictures(sources);
+  const std::vector<double> times = frame_times(longest(sources).trajectory, settings.movie);
+  adopt_movie(files, name);
+  if (options.shards == 1) require_pictures(files, settings);
+  else files.require_frames(true);
+  std::error_code error;
+  fs::create_directories(frames, error);
+  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", frames.string(), error.message()));
+
+  files.clean();
+  FrameReport report;
+  const std::vector<Task> tasks = tasks_of(production, times, files, options);
+  for (const Task& task : tasks) report.kept += task.current;
+  const bool all_kept = report.kept == static_cast<std::int64_t>(tasks.size());
+  // A movie that is there is one of all these frames: it goes before the first of them does.
+  if (!all_kept) remove_movie(files, name);
+  if (all_kept && is_current_movie(files, name, production, times.size(), settings.movie)) report.movie = movie;
+  const bool encode = options.shards == 1 && report.movie.empty();
+  const auto finish_poster = [&] {
+    if (options.shards > 1 || !settings.movie.poster) return;
+    if (const double end = end_of(longest(sources)); *settings.movie.poster <= end * (1 + 1e-9)) {
+      report.poster = write_poster(files, times, *settings.movie.poster);
+    } else {  // the simulation ended before it
+      files.remove(poster_name);
+      const auto [wanted, last] = sim::told_apart(*settings.movie.poster, end);
+      report.poster_remark = fmt::format("there is no poster: it is to show t = {}, and the trajectory ends at t = {}", wanted, last);
+    }
+  };
+  if (all_kept && !encode) {
+    if (options.shards == 1) files.remove_frames(static_cast<std::int64_t>(times.size()));
+    finish_poster();
+    files.settle();
+    return report;
+  }
+
+  // Software OpenGL has threads of its own; the pictures do not depend on their number.
+  if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
+  std::optional<Studio> studio;
+  Film film{{}, report};
+  if (encode) {
+    try {
+      film.encoder.emplace(format, files, production.width, production.height, settings.movie.frame_rate);
+      remove_movie(files, name);
+    } catch (const FfmpegMissing& missing) {
+      report.remark = missing.what();
+    }
+  }
+  std::future<void> writing;  // one picture is compressed while the next is drawn
+  const auto written = [&] {
+    if (!writing.valid()) return;
+    try {
+      writing.get();
+    } catch (const std::exception& failure) {
+      throw std::runtime_error(fmt::format("{}; {} frames are complete in '{}', and the same command continues",
+                                           failure.what(), report.kept + report.drawn - 1, frames.string()));
+    }
+  };
+  Progress progress("rendering", options.quiet);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const Task& task = tasks[i];
+    const std::string path = frame_name(task.number);
+    if (interrupted()) {
+      report.interrupted = true;
+      break;
+    }
+    progress.show(static_cast<double>(i) / static_cast<double>(tasks.size()),
+                  fmt::format("frame {} of {}", i + 1, tasks.size()));
+    if (task.current) {
+      if (film.encoder) film.attempt([&] { film.encoder->add(render::read_png(files.folder() / path).image); });
+      continue;
+    }
+    if (!studio) studio.emplace(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
+    auto image = std::make_shared<render::Image>(draw_picture(*studio, production, times[task.number]));
+    film.attempt([&] { film.encoder->add(*image); });
+    written();
+    // A picture by shaders under work is never taken for a finished one.
+    const std::string hash = options.shader_dir.empty() ? hash_of(production, times[task.number]) : "";
+    const render::PngText text = picture_text(sources.front(), *studio, times[task.number], hash);
+    writing = std::async(std::launch::async, [&files, image, path, text] {
+      files.write(path, render::png_bytes(*image, text));
+    });
+    ++report.drawn;
+  }
+  written();
+  if (report.interrupted) return report;
+  if (options.shards == 1) files.remove_frames(static_cast<std::int64_t>(times.size()));
+  film.attempt([&] {
+    film.encoder->finish();
+    files.write(record_of_movie(name), movie_record(production, times.size(), settings.movie, movie));
+    report.movie = movie;
+  });
+  finish_poster();
+  files.settle();
+  return report;
+}
+
+void render_still(const std::vector<PictureSource>& sources, double time, const fs::path& path, ResultFiles& files,
+                  const Options& options) {
+  const double end = end_of(longest(sources));
+  require_time(time, end);
+  const Production production = prepare_pictures(sources, time);
+  if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
+  Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
+  const render::Image image = draw_picture(studio, production, time);
+  files.write(path, render::png_bytes(image, picture_text(sources.front(), studio, time, hash_of(production, time))));
+}
+
+}  // namespace app

@@ -1,0 +1,41 @@
+// A movie: raw frames are piped into an ffmpeg child process, which writes the file.
+#pragma once
+
+#include "app/tables/movie_formats.h"
+#include "app/base/owned_files.h"
+
+#include "render/image/image.h"
+
+#include <stdexcept>
+#include <string>
+
+#include <sys/types.h>
+
+namespace app {
+
+class MovieEncoder {
+ public:
+  /// Starts ffmpeg on a draft in the folder; finish() renames it. Throws FfmpegMissing when ffmpeg is not installed.
+  MovieEncoder(const MovieFormat&, OwnedFiles& folder, int width, int height, double frame_rate);
+  MovieEncoder(const MovieEncoder&) = delete;
+  MovieEncoder& operator=(const MovieEncoder&) = delete;
+  /// Without finish(): stops ffmpeg and leaves nothing behind.
+  ~MovieEncoder();
+
+  void add(const render::Image& rgb);
+  void finish();
+
+ private:
+  OwnedFiles& folder_;
+  std::string name_;
+  sim::Draft draft_;
+  int width_, height_;
+  pid_t child_ = -1;
+  int pipe_ = -1;
+};
+
+struct FfmpegMissing : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace app

@@ -1,0 +1,204 @@
+#include "app/pictures/painting.h"
+
+#include "app/pictures/captions.h"
+#include "app/pictures/scales.h"
+
+#include "render/core/colormap.h"
+#include "render/core/style.h"
+#include "sim/measures/diagnostics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace app {
+
+namespace {
+
+/// 1 where the bending modulus or the rate is 0: then the units of the scene are left.
+double scale_of(const Painting& p, double bending_modulus) {
+  const double length = p.length, modulus = bending_modulus > 0 ? bending_modulus : 1, rate = p.rate > 0 ? p.rate : 1;
+  switch (p.field->scale) {
+    case sim::FieldScale::length: return 1 / length;
+    case sim::FieldScale::curvature: return length;
+    case sim::FieldScale::square_curvature: return length * length;
+    case sim::FieldScale::tension: return length * length / modulus;
+    case sim::FieldScale::force: return length * length * length / modulus;
+    case sim::FieldScale::velocity: return p.rate > 0 ? 1 / (length * rate) : 1;
+  }
+  return 1;
+}
+
+std::string label_of(const Painting& p, const sim::Scene& scene) {
+  const bool bends = std::all_of(scene.vesicles.begin(), scene.vesicles.end(),
+                                 [](const sim::VesicleParameters& v) { return v.bending_modulus > 0; });
+  const std::string_view per_modulus = bends ? "/κ_{b}" : "";
+  switch (p.field->scale) {
+    case sim::FieldScale::length: return fmt::format("{} / R_{{0}}", p.field->symbol);
+    case sim::FieldScale::curvature: return fmt::format("{} R_{{0}}", p.field->symbol);
+    case sim::FieldScale::square_curvature: return fmt::format("{} R_{{0}}^{{2}}", p.field->symbol);
+    case sim::FieldScale::tension: return fmt::format("{} R_{{0}}^{{2}}{}", p.field->symbol, per_modulus);
+    case sim::FieldScale::force: return fmt::format("{} R_{{0}}^{{3}}{}", p.field->symbol, per_modulus);
+    case sim::FieldScale::velocity:
+      return p.rate > 0 ? fmt::format("{} / {}R_{{0}}", p.field->symbol, scene.flows[0].kind == "shear" ? "γ̇" : "χ")
+                        : std::string(p.field->symbol);
+  }
+  return {};
+}
+
+/// Values at points that stand for equal shares of the parameter sphere.
+void collect(const sim::Coefficients& field, std::vector<double>& values) {
+  constexpr Eigen::Index latitudes = 32, longitudes = 48;
+  sim::Vector theta(latitudes);
+  for (Eigen::Index i = 0; i < latitudes; ++i)
+    theta[i] = std::acos(1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(latitudes));
+  const sim::Vector phi = sim::Vector::LinSpaced(longitudes + 1, 0, 2 * std::numbers::pi).head(longitudes);
+  const sim::Matrix samples = sim::sample_grid(field, theta, phi).value;
+  values.insert(values.end(), samples.data(), samples.data() + samples.size());
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + k, values.end());
+  return values[static_cast<std::size_t>(k)];
+}
+
+/// Of a field, in the units of its legend.
+struct FieldSize {
+  double natural = 1;   ///< how large it would be if it were neither zero nor extreme
+  double rounding = 0;  ///< smaller differences mean nothing
+};
+
+/// Both ends moved outward to round numbers. A field that is one value up to rounding gets a range about that value.
+std::pair<double, double> rounded(double low, double high, const FieldSize& size) {
+  const double largest = std::max(std::abs(low), std::abs(high));
+  if (high - low <= std::max(2 * size.rounding, 1e-6 * largest)) {
+    const bool zero = largest <= 2 * size.rounding;
+    const double middle = zero ? 0 : (low + high) / 2, room = zero ? size.natural : 0.1 * std::abs(middle);
+    low = middle - room;
+    high = middle + room;
+  }
+  const double width = high - low, power = std::pow(10, std::floor(std::log10(width / 10)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.0, 1.0})
+    if (factor * power >= width / 10 * (1 - 1e-9)) step = factor * power;
+  return {step * std::floor(low / step + 1e-9), step * std::ceil(high / step - 1e-9)};
+}
+
+const render::ColourMapRow& map_for(const render::ViewParameters& view, bool both_signs) {
+  return render::find_colour_map(view.colour_map.value_or(both_signs ? "blue-red" : "viridis"));
+}
+
+/// `values`: of the whole movie; empty when the range is given and only one picture is drawn. `shown`: of that picture.
+/// `end`: an automatic range ends there at the latest, unless all values are larger.
+void give_range(render::Legend& legend, const render::ViewParameters& view, std::vector<double>& values,
+                const std::vector<double>& shown, bool has_sign, const FieldSize& size,
+                double end = std::numeric_limits<double>::infinity()) {
+  double low = 0, high = 1;
+  if (!values.empty()) {
+    constexpr double outermost = 0.005;
+    low = quantile(values, outermost);
+    high = quantile(values, 1 - outermost);
+    if (low < end) high = std::min(high, end);
+  }
+  if (!view.field_range.empty()) {
+    low = view.field_range[0];
+    high = view.field_range[1];
+  }
+  const bool both = has_sign && low < -size.rounding && high > size.rounding && std::min(-low, high) > 0.3 * std::max(-low, high);
+  const render::ColourMapRow& map = map_for(view, both);
+  if (view.field_range.empty()) {
+    if (map.kind == render::MapKind::diverging) {
+      high = std::max(std::abs(low), std::abs(high));
+      low = -high;
+    }
+    std::tie(low, high) = rounded(low, high, size);
+  }
+  legend.low = low;
+  legend.high = high;
+  legend.colours = render::colour_table(map);
+  // Only a range about zero puts zero where the map turns.
+  legend.mirrored = map.kind == render::MapKind::diverging && std::abs(low + high) <= 1e-9 * (high - low);
+  const double slack = view.field_range.empty() ? 0.005 * (high - low) : size.rounding;
+  const auto [least, most] = std::minmax_element(shown.begin(), shown.end());
+  legend.below = least != shown.end() && *least < low - slack;
+  legend.above = most != shown.end() && *most > high + slack;
+}
+
+struct Quantity {
+  std::string_view name, label;
+  double (*of)(const sim::VesicleParameters&, const sim::VesicleMeasures&);
+};
+constexpr Quantity quantities[] = {
+    {"viscosity_contrast", "λ", [](const sim::VesicleParameters& v, const sim::VesicleMeasures&) { return v.viscosity_contrast; }},
+    {"bending_modulus", "κ_{b}", [](const sim::VesicleParameters& v, const sim::VesicleMeasures&) { return v.bending_modulus; }},
+    {"density_difference", "Δρ",
+     [](const sim::VesicleParameters& v, const sim::VesicleMeasures&) { return v.density_difference; }},
+    {"reduced_volume", "ν", [](const sim::VesicleParameters&, const sim::VesicleMeasures& m) { return m.reduced_volume; }},
+};
+
+void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& settings, const sim::State& state) {
+  sim::Plans plans;
+  std::vector<double> values;
+  for (std::size_t k = 0; k < state.vesicles.size(); ++k)
+    values.push_back(quantity.of(settings.scene.vesicles[k], sim::measure(plans, state.vesicles[k], 1, 1)));
+  render::Legend legend;
+  legend.label = quantity.label;
+  render::ViewParameters view = settings.view;
+  view.field_range.clear();
+  std::vector<double> all = values;
+  give_range(legend, view, all, values, false, {});
+  legend.mirrored = false;  // whole bodies have one value each: no dots
+  for (const double value : values) p.bodies.push_back(render::mapped(legend.colours, (value - legend.low) / (legend.high - legend.low)));
+  p.legend = legend;
+}
+
+}  // namespace
+
+Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vector<std::int64_t>& states,
+                       const Settings& settings, double area_radius, const sim::State* still) {
+  const render::ViewParameters& view = settings.view;
+  Painting p;
+  p.length = area_radius;
+  p.rate = flow_rate(settings.scene, area_radius);
+  const sim::State first = trajectory.state(0);
+  for (const Quantity& quantity : quantities)
+    if (quantity.name == view.colour_by) colour_by_quantity(p, quantity, settings, first);
+  for (std::size_t k = p.bodies.size(); k < first.vesicles.size(); ++k)
+    p.bodies.push_back(view.colours.empty() ? render::body_colour(k)
+                                            : render::parse_colour(view.colours[k % view.colours.size()]));
+  if (!render::find_style(view.style).field) return p;
+
+  p.field = &sim::find_field(view.field);
+  if (p.field->needs_neighbours && first.vesicles.size() < 2)
+    throw std::invalid_argument(fmt::format("the field '{}' needs two vesicles or more", p.field->name));
+  std::vector<double> values, of_still;
+  sim::Plans plans;
+  const auto add = [&](const sim::State& state, std::vector<double>& to) {
+    sim::Surroundings surroundings;
+    for (std::size_t v = 0; v < state.vesicles.size(); ++v)
+      collect(painted_field(plans, p, settings, state, v, surroundings), to);
+  };
+  if (still) add(*still, of_still);
+  if (!still || view.field_range.empty())
+    for (const std::int64_t k : states) add(trajectory.state(k), values);
+  const NaturalScales scales = natural_scales(settings.scene, first, area_radius);
+  const double unit = scale_of(p, settings.scene.vesicles.front().bending_modulus);
+  p.legend.emplace();
+  p.legend->label = label_of(p, settings.scene);
+  give_range(*p.legend, view, values, std::vector(still ? of_still : values), p.field->has_sign,
+             {unit * scales.size_of(p.field->scale), unit * scales.rounding_of(p.field->scale)}, p.field->automatic_end);
+  return p;
+}
+
+sim::Coefficients painted_field(sim::Plans& plans, const Painting& p, const Settings& settings, const sim::State& state,
+                                std::size_t vesicle, sim::Surroundings& surroundings) {
+  const double modulus = settings.scene.vesicles[vesicle].bending_modulus;
+  sim::Coefficients field = sim::membrane_field(plans, *p.field, state, vesicle, modulus, surroundings);
+  field.values *= scale_of(p, modulus);
+  return field;
+}
+
+}  // namespace app

@@ -1,8 +1,0 @@
-#include "version.h"
-
-namespace app {
-
-std::string version() { return TANKTREAD_VERSION; }
-std::string build() { return TANKTREAD_BUILD; }
-
-}  // namespace app

@@ -1,0 +1,223 @@
+#include "render/draw/draw.h"
+
+#include "render/draw/arrow_shape.h"
+#include "render/core/assets.h"
+#include "render/draw/draw_values.h"
+#include "render/core/style.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace render {
+namespace {
+
+constexpr double longest_arrow = 0.21, arrow_thickness = 0.009;  // half heights of the picture
+constexpr double weakest_arrow = 0.10;                           // of the longest; shorter ones are left out
+
+// The membranes as the picture shows them: points in half heights of the picture, dense enough for distances to them.
+std::vector<glm::dvec2> shadows(const Frame& frame) {
+  constexpr int stride = 2;  // of the mesh: 48 x 96 points
+  std::vector<glm::dvec2> places;
+  for (const Body& body : frame.bodies) {
+    const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
+    for (int j = 0; j < columns; j += stride)
+      for (int i = 0; i < rings; i += stride) {
+        const glm::dvec2 place = frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(j * rings + i)]);
+        places.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
+      }
+  }
+  return places;
+}
+
+// 0 when the segment touches a membrane's shadow, 1 when it is well away: half an arrow beside a contour looks like
+// something that belongs to the vesicle.
+double clear_of_bodies(const std::vector<glm::dvec2>& shadows, const glm::dvec2& tail, const glm::dvec2& tip) {
+  constexpr double near = 0.03, far = 0.055;  // half heights
+  const glm::dvec2 along = tip - tail;
+  const double length2 = std::max(glm::dot(along, along), 1e-12);
+  double nearest2 = far * far;
+  for (const glm::dvec2& p : shadows) {
+    const glm::dvec2 away = p - tail - along * std::clamp(glm::dot(p - tail, along) / length2, 0.0, 1.0);
+    nearest2 = std::min(nearest2, glm::dot(away, away));
+  }
+  return glm::smoothstep(near, far, std::sqrt(nearest2));
+}
+
+// 0 where the colour bar, axes, profile or inset stand, 1 elsewhere, smooth between; place as Camera::picture_place() gives it.
+double clear_of_annotation(const Frame& frame, const glm::dvec2& place) {
+  constexpr double ramp = 0.10;  // half heights, as all lengths here
+  const double aspect = frame.camera.half_width / frame.camera.half_height;
+  const double from_left = (1 + place.x) * aspect, from_right = (1 - place.x) * aspect;
+  double clear = 1;
+  const auto keep = [&](bool shown, double x, double low, double high) {  // x: how far beyond the annotation's inner edge
+    if (!shown) return;
+    const double outside = std::max({x, low - place.y, place.y - high}) / ramp;
+    clear = std::min(clear, glm::smoothstep(0.0, 1.0, outside));
+  };
+  keep(frame.legend && frame.view.colour_bar, from_right - 0.42, -0.52, 0.68);
+  keep(frame.view.triad, from_right - 0.45, -1, -0.62);
+  keep(frame.inset && frame.view.inset, from_right - 0.72, 0.48, 1);
+  keep(frame.profile && frame.view.flow_profile, from_left - 0.25 * aspect, -0.72, 0.78);
+  const double from_middle = std::abs(place.x) * aspect;
+  keep(!frame.captions.title.empty(), from_middle - 0.8, 0.80, 1);
+  keep(!frame.captions.panel.empty(), from_middle - 0.35, -1, -0.80);
+  return clear;
+}
+
+void check(const ViewParameters& view) {
+  if (view.size.size() != 2 || view.size[0] < 1 || view.size[1] < 1)
+    throw std::invalid_argument("view.size needs a width and a height of at least 1 px");
+  if (view.supersampling < 1) throw std::invalid_argument("view.supersampling must be at least 1");
+}
+
+void set_ground(const Program& program, const Frame& frame) {
+  const bool is_white = frame.view.background == "white";
+  program.set("u_top", vector_of(is_white ? white : ground_top));
+  program.set("u_bottom", vector_of(is_white ? white : ground_bottom));
+}
+
+}  // namespace
+
+Renderer::Renderer(const GlChoice& choice, std::filesystem::path shader_dir)
+    : context_(choice),
+      shader_dir_(std::move(shader_dir)),
+      nothing_(context_.gl()),
+      bodies_(context_.gl()),
+      hulls_(context_.gl()),
+      ghosts_(context_.gl()),
+      ribbons_(context_.gl()),
+      arrows_(context_.gl()),
+      beads_(context_.gl()),
+      palette_(context_.gl()) {
+  for (const auto& [array, shape] : {std::pair{&arrows_, arrow_shape()}, std::pair{&beads_, bead_shape()}}) {
+    array->attribute(0, shape.position);
+    array->attribute(1, shape.normal);
+  }
+}
+
+// Programs and buffers are about to be freed, and must be freed in their own context.
+Renderer::~Renderer() {
+  try {
+    context_.make_current();
+  } catch (const std::runtime_error&) {
+    return;  // the driver is gone, and its objects with it
+  }
+}
+
+PngText Renderer::metadata() const {
+  return {
+      {"back_end", information().back_end}, {"GL_RENDERER", information().renderer}, {"GL_VERSION", information().version}};
+}
+
+const Program& Renderer::program(const std::string& name, const std::string& defines) {
+  const std::string key = name + "\n" + defines;
+  if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
+  const std::string head = "#version 330 core\n" + defines;
+  std::string library;
+  if (name == "body" || name == "arrow") library += shader_text("light.glsl", shader_dir_);
+  if (name == "ground" || name == "arrow") library += shader_text("ground.glsl", shader_dir_);
+  if (name == "body") library += shader_text("lines.glsl", shader_dir_);
+  return programs_
+      .try_emplace(key, context_.gl(), name, head + shader_text(name + ".vert", shader_dir_),
+                   head + library + shader_text(name + ".frag", shader_dir_))
+      .first->second;
+}
+
+void Renderer::begin(const Frame& frame) {
+  context_.make_current();
+  const Gl& gl = context_.gl();
+  const int width = frame.view.size[0] * frame.view.supersampling, height = frame.view.size[1] * frame.view.supersampling;
+  if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height) {
+    framebuffer_.reset();
+    constexpr std::size_t of_sample = 16;  // bytes: colour and depth, the copy that is read back, and as much again for the driver
+    require_memory(of_sample * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    framebuffer_.emplace(gl, width, height);
+  }
+  framebuffer_->bind();
+  gl.ClearColor(1, 1, 1, 1);
+  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthFunc(GL_LESS);
+  gl.Enable(GL_CULL_FACE);
+  gl.FrontFace(GL_CCW);
+  gl.CullFace(GL_BACK);
+}
+
+void Renderer::draw_ground(const Frame& frame) {
+  const Gl& gl = context_.gl();
+  const Program& p = program("ground", "");
+  p.use();
+  set_ground(p, frame);
+  nothing_.bind();
+  gl.Disable(GL_DEPTH_TEST);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.Enable(GL_DEPTH_TEST);
+}
+
+void Renderer::draw_arrows(const Frame& frame) {
+  const FlowArrows& flow = frame.arrows;
+  if (!frame.view.flow_arrows || flow.points.rows() == 0) return;
+  double fastest = flow.reference_speed;
+  if (fastest <= 0) fastest = flow.velocities.rowwise().norm().maxCoeff();
+  if (!std::isfinite(fastest)) return;
+  const bool rests = fastest <= 0;
+  if (rests && !frame.camera.follows) return;
+
+  const Camera& camera = frame.camera;
+  const std::vector<glm::dvec2> bodies = shadows(frame);
+  const auto place_of = [&](const glm::dvec3& point) {
+    return camera.picture_place(point) * glm::dvec2(camera.half_width / camera.half_height, 1);
+  };
+  std::vector<glm::vec4> starts;
+  std::vector<glm::vec3> vectors;
+  for (Eigen::Index i = 0; i < flow.points.rows(); ++i) {
+    const glm::dvec3 v = rests ? glm::dvec3(0) : to_glm(flow.velocities.row(i)) / fastest;
+    const glm::dvec3 middle = to_glm(flow.points.row(i)), arrow = v * longest_arrow * camera.half_height;
+    if (!rests && !(glm::length(v) >= weakest_arrow)) continue;
+    double beside = clear_of_annotation(frame, camera.picture_place(middle));
+    if (!camera.follows) beside = beside > 0.6;  // arrows at rest are there or not: a faint one looks like a flaw
+    const double shown = flow.shown * clear_of_captions(camera.picture_place(middle)) * beside *
+                         clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
+    if (shown <= 0) continue;
+    starts.emplace_back(glm::vec3(camera.place(middle)), shown);
+    vectors.emplace_back(arrow / camera.half_height);
+  }
+  if (starts.empty()) return;
+  const Gl& gl = context_.gl();
+  const Program& p = program("arrow", rests ? "#define BEAD\n" : "");
+  p.use();
+  set_camera(p, camera);
+  set_ground(p, frame);
+  p.set("u_colour", linear(arrow_colour));
+  p.set("u_height", static_cast<float>(framebuffer_->height()));
+  p.set("u_thickness", static_cast<float>(arrow_thickness));
+  VertexArray& shape = rests ? beads_ : arrows_;
+  shape.attribute(2, starts, 1);
+  if (!rests) shape.attribute(3, vectors, 1);
+  shape.bind();
+  gl.DrawArraysInstanced(GL_TRIANGLES, 0, rests ? bead_shape_vertices : arrow_shape_vertices,
+                         static_cast<GLsizei>(starts.size()));
+  gl.Clear(GL_DEPTH_BUFFER_BIT);  // arrows stand behind everything, though the plane they show goes through the vesicles
+}
+
+Image Renderer::finish(const Frame& frame) {
+  framebuffer_->read(samples_);
+  if (const GLenum error = context_.gl().GetError(); error != GL_NO_ERROR)
+    throw std::runtime_error("OpenGL reports error " + std::to_string(error) + " (" + information().renderer + ")");
+  return downsample(samples_, frame.view.supersampling, RowOrder::bottom_first);
+}
+
+Image draw_frame(Renderer& renderer, const Frame& frame) {
+  check(frame.view);
+  renderer.begin(frame);
+  renderer.draw_ground(frame);
+  renderer.draw_arrows(frame);
+  if (!find_style(frame.view.style).cut) renderer.draw_flow_lines(frame);
+  renderer.draw_bodies(frame);
+  Image image = renderer.finish(frame);
+  draw_captions(image, renderer.font_, frame);
+  return image;
+}
+
+}  // namespace render

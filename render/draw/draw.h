@@ -1,0 +1,63 @@
+// Draws a frame in passes: ground, arrows or streamlines, bodies with outlines, captions.
+#pragma once
+
+#include "render/gl/context.h"
+#include "render/gl/gpu.h"
+#include "render/overlay/overlay.h"
+#include "render/scene/frame.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+namespace render {
+
+/// Everything that outlives a frame: context, compiled variants, buffers. One per thread at most; several contexts in
+/// several threads are not faster (software rasterisers share one lock), so use processes.
+class Renderer {
+ public:
+  /// shader_dir: read shaders from there instead of the embedded ones. Throws like GlContext.
+  explicit Renderer(const GlChoice& choice = {}, std::filesystem::path shader_dir = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+
+  const GlInformation& information() const { return context_.information(); }
+  /// "back_end", "GL_RENDERER", "GL_VERSION" for the text chunks of pictures.
+  PngText metadata() const;
+
+ private:
+  friend Image draw_frame(Renderer&, const Frame&);
+  const Program& program(const std::string& name, const std::string& defines);
+  void begin(const Frame&);
+  void draw_ground(const Frame&);
+  void draw_arrows(const Frame&);
+  void draw_bodies(const Frame&);
+  void draw_ghosts(const Frame&);
+  void draw_cut_edges(const Frame&);
+  void draw_flow_lines(const Frame&);
+  /// A strip along the points in the picture, `reach` samples to both sides, moved towards the eye by `nearer`.
+  void draw_ribbon(const Camera&, std::span<const glm::dvec3> points, bool closed, float reach, double nearer);
+  void upload(const Body&, const Camera&);
+  void draw_body(const Frame&, const Body&);
+  /// The core hides what is behind it; the edge, two translucent hulls, fades out in thirds of a sample.
+  enum class OutlinePart { core, edge };
+  std::vector<std::uint32_t> rim_of(const Frame&, const Body&) const;
+  void draw_outline(const Frame&, const Body&, const std::vector<std::uint32_t>& rim, OutlinePart);
+  Image finish(const Frame&);
+
+  GlContext context_;
+  std::filesystem::path shader_dir_;
+  std::map<std::string, Program> programs_;  ///< by name and defines
+  VertexArray nothing_, bodies_, hulls_, ghosts_, ribbons_, arrows_, beads_;
+  Palette palette_;
+  std::shared_ptr<const MeshPlan> uploaded_plan_;
+  std::optional<Framebuffer> framebuffer_;
+  Image samples_;
+  Font font_;
+};
+
+/// RGB picture of frame.view.size. The same frame gives the same bytes with every software driver of one Mesa version.
+/// Throws std::runtime_error when the driver fails, std::invalid_argument for an unknown style or a bad size.
+Image draw_frame(Renderer& renderer, const Frame& frame);
+
+}  // namespace render

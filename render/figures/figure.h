@@ -1,0 +1,139 @@
+// Figures for papers and slides: a catalogue of kinds, each drawn from values, written as PNG, SVG, PDF and CSV.
+#pragma once
+
+#include "render/figures/canvas.h"
+#include "render/core/parameters.h"
+#include "render/figures/plot_marks.h"
+#include "render/figures/streamlines.h"
+
+#include "sim/core/catalogue.h"
+#include "sim/core/types.h"
+
+#include <array>
+#include <vector>
+
+namespace render {
+
+/// Quantities against time, computed by the caller: one curve each; curves with the same `axis` share a panel.
+struct Series {
+  std::string name;  ///< in the legend: "λ = 4"; column header of the CSV
+  std::string axis;  ///< label of the panel's y axis: "σR_{0}^{2}/κ_{b}"
+  std::vector<double> times, values;
+  Scale scale = Scale::linear;
+  std::optional<std::size_t> colour;  ///< number of the palette; else in order
+  bool dashed = false;
+  std::optional<std::string> legend;  ///< instead of the name in the legend; empty: not in the legend
+};
+
+/// A panel of curves.
+struct Curve {
+  std::string name;  ///< in the legend; empty: not there
+  std::vector<double> x, y;
+  std::vector<double> error;     ///< half lengths of bars; empty: none
+  std::size_t colour = 0;        ///< number of the palette
+  std::optional<double> instant; ///< 0..1: a colour between early and late instead of the palette
+  std::optional<Marker> marker;
+  bool line = true, dashed = false;
+  std::string csv_name = {};     ///< in the CSV; empty: the name, or the curve's number
+};
+struct Plot {
+  Axis x, y;  ///< on a logarithmic axis the curves contain the values themselves
+  std::vector<Curve> curves;
+  std::optional<Range> x_range, y_range;
+  std::optional<Corner> legend;  ///< its corner
+};
+
+/// The flow in a plane at one instant, computed by the caller.
+struct FlowPicture {
+  CutPlane plane;  ///< origin: zero of the coordinates of lines and speeds
+  Range x, y;      ///< the window, in lengths of the scene
+  std::vector<Streamline> lines;
+  sim::Matrix speed;  ///< on a net of cells, row 0 at the top; empty: no background
+  std::array<Range, 2> speed_window;  ///< covered by the cells, along x and y
+  std::string speed_label = "|u|";
+  double speed_factor = 1;   ///< shown speed = this x speed
+  double spacing = 0.2;      ///< of the lines, length
+  std::vector<std::string> remarks;  ///< first lines of the CSV
+};
+
+struct FigureInput {
+  std::vector<sim::State> states;   ///< those to show
+  std::vector<std::string> labels;  ///< one per vesicle, for the legend; may be empty
+  std::vector<Series> series;       ///< of "time-series"
+  std::vector<Plot> plots;          ///< for kinds drawn from plots
+  std::vector<Image> stills;        ///< for "snapshots": the pictures requested by sheet_layout()
+  FlowPicture flow;                 ///< of "streamlines"
+  std::string time_symbol = "t";    ///< "γ̇t"
+  double time_factor = 1;           ///< shown time = this x State::time
+  double length = 1;                ///< area radius: lengths are shown in units of it
+  std::string length_symbol = "R_{0}";
+  std::string camera = "flow-gradient";  ///< of the stills
+  FigureParameters parameters;
+};
+
+struct Figure {
+  Drawing drawing;
+  std::string csv;  ///< the same data; the first line has the column names
+};
+
+/// The input of a kind of figure.
+enum class FigureNeeds { instants, all_states, series, plots, stills, flow };
+
+struct FigureRow {
+  std::string_view name;
+  std::string_view meaning;
+  FigureNeeds needs;
+  Figure (*draw)(const FigureInput&);
+};
+const std::vector<FigureRow>& figures();
+/// Throws std::invalid_argument that names the nearest known kind.
+const FigureRow& find_figure(std::string_view name);
+
+/// Of the PNG.
+double dots_per_inch(const FigureParameters& parameters);
+
+/// The requested page: sizes in points, 0 where the kind of figure decides.
+struct Page {
+  Theme theme;
+  double width = 0, height = 0;
+};
+Page page_of(const FigureParameters& parameters);
+
+/// `panels` indices spread evenly over `count` states, including first and last; or, with times, the nearest states.
+/// Throws std::invalid_argument for a time beyond the last state.
+std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters);
+
+/// The plane of a figure; origin: the given point, or the vesicle's centroid. Its axes lie along x and z as far as
+/// possible.
+CutPlane plane_of(const FigureParameters& parameters, const sim::Vec3& centroid);
+/// "x" for the first axis of the scene, and so on; "ξ" and "η" when the plane is oblique.
+std::pair<std::string, std::string> axis_names(const CutPlane& plane);
+
+/// One picture of a sheet: place on the page in points, content in lengths of the scene.
+struct SheetPanel {
+  double left = 0, top = 0, width = 0, height = 0;
+  sim::Vec3 target = sim::Vec3::Zero();
+  double half_height = 1;
+  std::string title;
+};
+struct Sheet {
+  double width = 0, height = 0;
+  double scale = 1;  ///< points per length, the same for all panels
+  std::vector<SheetPanel> panels;
+};
+/// Rows of panels at one scale that fill the page; the width of each follows its state.
+Sheet sheet_layout(const FigureInput& input);
+
+/// "γ̇t = 2.5": with enough digits to distinguish the instants of the figure. `time`: as shown.
+std::string time_text(const FigureInput& input, double time);
+
+/// A text that may contain commas or quotes as one CSV cell.
+std::string csv_cell(const std::string& text);
+
+inline constexpr const char* figure_extensions[] = {".png", ".svg", ".pdf", ".csv"};
+/// stem.png, stem.svg, stem.pdf, stem.csv; returns the four paths. `text` is stored in the PNG. Throws
+/// std::runtime_error with path and reason.
+std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem, const PngText& text = {},
+                                               const sim::FileWriter& write = sim::write_file);
+
+}  // namespace render

@@ -1,0 +1,234 @@
+#include "render/figures/plot_marks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <numbers>
+
+namespace render {
+namespace {
+
+void clip_to(cairo_t* cairo, const Panel& p) {
+  cairo_rectangle(cairo, p.left, p.top, p.width, p.height);
+  cairo_clip(cairo);
+}
+
+}  // namespace
+
+void draw_polyline(const Pen& pen, const Panel& p, const std::vector<double>& x, const std::vector<double>& y,
+                   const Stroke& stroke) {
+  cairo_t* cairo = pen.cairo;
+  cairo_save(cairo);
+  clip_to(cairo, p);
+  cairo_new_path(cairo);
+  bool down = false;
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) {
+      down = false;
+      continue;
+    }
+    (down ? cairo_line_to : cairo_move_to)(cairo, p.page_x(x[i]), p.page_y(y[i]));
+    down = true;
+  }
+  set_colour(pen, stroke.colour, stroke.opacity);
+  const double width = stroke.width * pen.theme.stroke;
+  cairo_set_line_width(cairo, width);
+  cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(cairo, stroke.dashed ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
+  const double dashes[2] = {4 * width, 2.6 * width};
+  if (stroke.dashed) cairo_set_dash(cairo, dashes, 2, 0);
+  cairo_stroke(cairo);
+  cairo_restore(cairo);
+}
+
+void draw_closed_curve(const Pen& pen, const Panel& p, const ClosedCurve& curve, const Eigen::Vector2d& shift,
+                       const Stroke& stroke, double fill_opacity) {
+  cairo_t* cairo = pen.cairo;
+  cairo_save(cairo);
+  clip_to(cairo, p);
+  cairo_new_path(cairo);
+  const auto x = [&](const Eigen::Vector2d& v) { return p.page_x(v.x() + shift.x()); };
+  const auto y = [&](const Eigen::Vector2d& v) { return p.page_y(v.y() + shift.y()); };
+  bool first = true;
+  for (const CubicPiece& c : cubic_pieces(curve)) {
+    if (first) cairo_move_to(cairo, x(c.p0), y(c.p0));
+    first = false;
+    cairo_curve_to(cairo, x(c.p1), y(c.p1), x(c.p2), y(c.p2), x(c.p3), y(c.p3));
+  }
+  cairo_close_path(cairo);
+  if (fill_opacity > 0) {
+    set_colour(pen, stroke.colour, fill_opacity);
+    cairo_fill_preserve(cairo);
+  }
+  set_colour(pen, stroke.colour, stroke.opacity);
+  cairo_set_line_width(cairo, stroke.width * pen.theme.stroke);
+  cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+  cairo_stroke(cairo);
+  cairo_restore(cairo);
+}
+
+namespace {
+
+void marker_path(cairo_t* cairo, Marker marker, double x, double y, double r) {
+  cairo_new_path(cairo);
+  const auto polygon = [&](std::initializer_list<std::array<double, 2>> corners) {
+    for (const auto& c : corners) cairo_line_to(cairo, x + r * c[0], y + r * c[1]);
+    cairo_close_path(cairo);
+  };
+  switch (marker) {
+    case Marker::dot:
+    case Marker::ring: cairo_arc(cairo, x, y, r, 0, 2 * std::numbers::pi); break;
+    case Marker::square: polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}); break;
+    case Marker::diamond: polygon({{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}}); break;
+    case Marker::triangle: polygon({{0, -1.25}, {1.1, 0.75}, {-1.1, 0.75}}); break;
+  }
+}
+
+void draw_marker(const Pen& pen, Marker marker, double x, double y, const Colour& colour, double radius) {
+  const double r = radius * pen.theme.stroke;
+  marker_path(pen.cairo, marker, x, y, r);
+  set_colour(pen, marker == Marker::ring ? pen.theme.ground : colour);
+  cairo_fill_preserve(pen.cairo);
+  set_colour(pen, colour);
+  cairo_set_line_width(pen.cairo, 0.8 * pen.theme.stroke);
+  if (marker == Marker::ring) cairo_stroke(pen.cairo);
+  cairo_new_path(pen.cairo);
+}
+
+}  // namespace
+
+void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y, Marker marker,
+                  const Colour& colour, double radius, const std::vector<double>& error) {
+  for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) {
+    if (!std::isfinite(x[k]) || !std::isfinite(y[k])) continue;
+    if (k < error.size() && error[k] > 0) {
+      const double low = panel.page_y(y[k] - error[k]), high = panel.page_y(y[k] + error[k]), at = panel.page_x(x[k]);
+      const double cap = radius * pen.theme.stroke;
+      set_colour(pen, colour);
+      cairo_set_line_width(pen.cairo, pen.theme.line);
+      cairo_new_path(pen.cairo);
+      cairo_move_to(pen.cairo, at, low);
+      cairo_line_to(pen.cairo, at, high);
+      for (const double end : {low, high}) {
+        cairo_move_to(pen.cairo, at - cap, end);
+        cairo_rel_line_to(pen.cairo, 2 * cap, 0);
+      }
+      cairo_stroke(pen.cairo);
+    }
+    draw_marker(pen, marker, panel.page_x(x[k]), panel.page_y(y[k]), colour, radius);
+  }
+}
+
+void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height, bool smooth) {
+  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height);
+  unsigned char* data = cairo_image_surface_get_data(surface);
+  if (data == nullptr) {
+    cairo_surface_destroy(surface);
+    throw std::bad_alloc();
+  }
+  const int stride = cairo_image_surface_get_stride(surface);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* c = image.at(x, y);
+      const std::uint32_t v = static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2];
+      std::memcpy(data + static_cast<std::ptrdiff_t>(y) * stride + 4 * static_cast<std::ptrdiff_t>(x), &v, sizeof v);
+    }
+  cairo_surface_mark_dirty(surface);
+  cairo_save(cairo);
+  cairo_translate(cairo, left, top);
+  cairo_scale(cairo, width / image.width, height / image.height);
+  cairo_set_source_surface(cairo, surface, 0, 0);
+  cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);  // or the edges fade into the ground
+  cairo_pattern_set_filter(cairo_get_source(cairo), smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
+  cairo_rectangle(cairo, 0, 0, image.width, image.height);
+  cairo_fill(cairo);
+  cairo_restore(cairo);
+  cairo_surface_destroy(surface);
+}
+
+namespace {
+
+constexpr double sample = 2.6, legend_spacing = 1.45, legend_edge = 0.8;  // in heights of the text
+
+void draw_entry(const Pen& pen, const LegendEntry& entry, double x, double baseline) {
+  const double y = baseline - 0.33 * pen.theme.text, length = sample * pen.theme.text;
+  if (entry.marker) {
+    draw_marker(pen, *entry.marker, x + length / 2, y, entry.colour, 1.8);
+    return;
+  }
+  set_colour(pen, entry.colour);
+  cairo_save(pen.cairo);
+  cairo_set_line_width(pen.cairo, pen.theme.stroke);
+  const double dashes[2] = {4 * pen.theme.stroke, 2.6 * pen.theme.stroke};
+  if (entry.dashed) cairo_set_dash(pen.cairo, dashes, 2, 0);
+  cairo_set_line_cap(pen.cairo, CAIRO_LINE_CAP_BUTT);
+  cairo_move_to(pen.cairo, x, y);
+  cairo_rel_line_to(pen.cairo, length, 0);
+  cairo_stroke(pen.cairo);
+  cairo_restore(pen.cairo);
+}
+
+}  // namespace
+
+Eigen::Vector2d legend_size(const Ruler& ruler, const Theme& theme, const std::vector<LegendEntry>& entries) {
+  if (entries.empty()) return Eigen::Vector2d::Zero();
+  double widest = 0;
+  for (const LegendEntry& e : entries) widest = std::max(widest, ruler.width(theme.text, e.name));
+  return {widest + (sample + 0.6 + 2 * legend_edge) * theme.text,
+          (legend_spacing * static_cast<double>(entries.size()) + 2 * legend_edge - 0.4) * theme.text};
+}
+
+void draw_legend(const Pen& pen, const Panel& p, const std::vector<LegendEntry>& entries, Corner corner) {
+  if (entries.empty()) return;
+  const Eigen::Vector2d size = legend_size(Ruler(), pen.theme, entries);
+  const bool right = corner == Corner::upper_right || corner == Corner::lower_right;
+  const bool upper = corner == Corner::upper_right || corner == Corner::upper_left;
+  const double text = pen.theme.text, x = (right ? p.left + p.width - size.x() : p.left) + legend_edge * text;
+  double y = (upper ? p.top : p.top + p.height - size.y()) + (legend_edge + 0.9) * text;
+  for (const LegendEntry& entry : entries) {
+    draw_entry(pen, entry, x, y);
+    set_colour(pen, pen.theme.ink);
+    draw_text(pen.cairo, pen.font, text, x + (sample + 0.6) * text, y, entry.name);
+    y += legend_spacing * text;
+  }
+}
+
+void draw_legend_line(const Pen& pen, double right, double baseline, const std::vector<LegendEntry>& entries) {
+  const double text = pen.theme.text;
+  double x = right;
+  for (std::size_t i = entries.size(); i-- > 0;) {
+    set_colour(pen, pen.theme.ink);
+    x -= draw_text(pen.cairo, pen.font, text, x, baseline, entries[i].name, Align::right) + (sample + 0.6) * text;
+    draw_entry(pen, entries[i], x, baseline);
+    x -= 1.8 * text;
+  }
+}
+
+std::optional<Corner> empty_corner(const Panel& p, const Eigen::Vector2d& size,
+                                   const std::vector<std::pair<std::vector<double>, std::vector<double>>>& curves) {
+  const auto holds = [&](Corner corner, double x, double y) {
+    const bool right = corner == Corner::upper_right || corner == Corner::lower_right;
+    const bool upper = corner == Corner::upper_right || corner == Corner::upper_left;
+    return (right ? x > p.left + p.width - size.x() : x < p.left + size.x()) &&
+           (upper ? y < p.top + size.y() : y > p.top + p.height - size.y());
+  };
+  for (const Corner corner : {Corner::upper_right, Corner::upper_left, Corner::lower_right, Corner::lower_left}) {
+    bool empty = true;
+    for (const auto& [x, y] : curves)
+      for (std::size_t i = 0; empty && i < std::min(x.size(), y.size()); ++i) {
+        if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+        const double x1 = p.page_x(x[i]), y1 = p.page_y(y[i]);
+        empty = !holds(corner, x1, y1);
+        if (i == 0 || !std::isfinite(x[i - 1]) || !std::isfinite(y[i - 1])) continue;
+        const double x0 = p.page_x(x[i - 1]), y0 = p.page_y(y[i - 1]);
+        const int pieces = std::clamp(static_cast<int>(std::hypot(x1 - x0, y1 - y0) / 4), 1, 100);
+        for (int k = 1; empty && k < pieces; ++k) empty = !holds(corner, x0 + (x1 - x0) * k / pieces, y0 + (y1 - y0) * k / pieces);
+      }
+    if (empty) return corner;
+  }
+  return {};
+}
+
+}  // namespace render

@@ -1,0 +1,48 @@
+// Contents of a panel: curves, markers, pictures, and the legend.
+#pragma once
+
+#include "render/image/image.h"
+#include "render/figures/plot.h"
+#include "render/scene/section.h"
+
+#include <optional>
+
+namespace render {
+
+struct Stroke {
+  Colour colour;
+  double width = 1;  ///< in units of the theme's stroke
+  double opacity = 1;
+  bool dashed = false;
+};
+/// Clipped to the panel. Points that are not finite interrupt the line.
+void draw_polyline(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                   const Stroke& stroke);
+/// `shift` is added to the points; fill_opacity > 0 tints the inside.
+void draw_closed_curve(const Pen& pen, const Panel& panel, const ClosedCurve& curve, const Eigen::Vector2d& shift,
+                       const Stroke& stroke, double fill_opacity = 0);
+enum class Marker { dot, square, diamond, triangle, ring };
+/// radius: in units of the theme's stroke. error: half length of a bar in y; empty: none.
+void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y, Marker marker,
+                  const Colour& colour, double radius = 1.8, const std::vector<double>& error = {});
+/// An RGB picture in a rectangle of the page; smooth: interpolated when enlarged.
+void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height, bool smooth = true);
+
+/// One line of a legend.
+struct LegendEntry {
+  std::string name;
+  Colour colour;
+  std::optional<Marker> marker;  ///< instead of a line
+  bool dashed = false;
+};
+enum class Corner { upper_right, lower_right, upper_left, lower_left };
+void draw_legend(const Pen& pen, const Panel& panel, const std::vector<LegendEntry>& entries, Corner corner);
+/// The same in one line whose right end is at (right, baseline).
+void draw_legend_line(const Pen& pen, double right, double baseline, const std::vector<LegendEntry>& entries);
+/// Size including its margin, pt.
+Eigen::Vector2d legend_size(const Ruler& ruler, const Theme& theme, const std::vector<LegendEntry>& entries);
+/// A corner where a rectangle of that size intersects no curve, if any.
+std::optional<Corner> empty_corner(const Panel& panel, const Eigen::Vector2d& size,
+                                   const std::vector<std::pair<std::vector<double>, std::vector<double>>>& curves);
+
+}  // namespace render

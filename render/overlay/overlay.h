@@ -1,0 +1,13 @@
+// Text and symbols on a finished frame: time, parameters, title, scale bar, annotations.
+#pragma once
+
+#include "render/image/image.h"
+#include "render/scene/frame.h"
+#include "render/image/text.h"
+
+namespace render {
+
+/// Draws the captions requested by the view onto an RGB picture.
+void draw_captions(Image& image, const Font& font, const Frame& frame);
+
+}  // namespace render

@@ -1,0 +1,24 @@
+#include "render/scene/cutaway.h"
+
+#include "render/scene/section.h"
+#include "render/scene/surface.h"
+
+namespace render {
+
+Cut make_cut(const sim::Coefficients& position, const sim::Vec3& normal, double offset) {
+  CutPlane plane;
+  plane.normal = normal.normalized();
+  plane.origin = volume_moments(position).centroid + offset * plane.normal;
+  plane.right = plane.normal.unitOrthogonal();
+  plane.up = plane.normal.cross(plane.right);
+  Cut result{to_glm(plane.normal), to_glm(plane.origin), {}};
+  constexpr int latitudes = 80;  // corners of the rim stay below a tenth of a pixel
+  for (const ClosedCurve& curve : cut(position, plane, latitudes)) {
+    std::vector<glm::dvec3>& edge = result.edges.emplace_back();
+    for (Eigen::Index k = 0; k < curve.points.rows(); ++k)
+      edge.push_back(to_glm(plane.origin + curve.points(k, 0) * plane.right + curve.points(k, 1) * plane.up));
+  }
+  return result;
+}
+
+}  // namespace render

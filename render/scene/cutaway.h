@@ -1,0 +1,11 @@
+// The part of a vesicle removed by the style "cutaway", and the rim that remains.
+#pragma once
+
+#include "render/scene/frame.h"
+
+namespace render {
+
+/// The plane has the given normal, of any length but 0, and lies `offset` from the vesicle's centre of mass along it.
+Cut make_cut(const sim::Coefficients& position, const sim::Vec3& normal, double offset);
+
+}  // namespace render

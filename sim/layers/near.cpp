@@ -1,0 +1,214 @@
+#include "sim/layers/near.h"
+
+#include "sim/layers/kernels.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// At a pole there is no derivative along a circle of latitude; a point that is off by less than 1e-6 has one.
+Vec3 beside_the_pole(const Vec3& s) {
+  return std::hypot(s[0], s[1]) < 1e-9 ? Vec3(s[0] + 1e-6, s[1], s[2]).normalized() : s;
+}
+
+Vec3 normal_at(const Coefficients& x, const Vec3& s) {
+  const FirstDerivatives y = sample_points_first(x, s.transpose());
+  const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose();
+  return a.cross(b).normalized();
+}
+
+}  // namespace
+
+NearestPoint nearest_point(const Coefficients& x, const Vec3& target, const Vec3& start) {
+  // Newton on |x(s) - target|^2 / 2 along great circles through s; a step that does not come nearer is halved.
+  Vec3 s = beside_the_pole(start.normalized());
+  SecondDerivatives y = sample_points_second(x, s.transpose());
+  const auto distance_of = [&](const SecondDerivatives& at) { return (at.value.row(0).transpose() - target).norm(); };
+  double distance = distance_of(y);
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    const auto [e_t, e_f, rho] = sphere_frame(s);
+    const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose() / rho, miss = target - y.value.row(0).transpose();
+    const Eigen::Vector2d slope(a.dot(miss), b.dot(miss));
+    Eigen::Matrix2d metric, curved;
+    metric << a.dot(a), a.dot(b), a.dot(b), b.dot(b);
+    // The second derivative along the sphere; at a pole 1/rho^2 amplifies rounding, and the metric alone must do.
+    const Vec3 x_tf = (y.tf.row(0).transpose() - s[2] * b) / rho;
+    const Vec3 x_ff = (y.ff.row(0).transpose() / rho + s[2] * a) / rho;
+    curved << a.dot(a) - y.tt.row(0).dot(miss), a.dot(b) - x_tf.dot(miss), 0, b.dot(b) - x_ff.dot(miss);
+    curved(1, 0) = curved(0, 1);
+    // Where the target lies beyond a centre of curvature the least distance is elsewhere: the metric always descends.
+    const bool newton = rho > 1e-4 && curved(0, 0) > 0 && curved.determinant() > 0.01 * metric.determinant();
+    const Eigen::Vector2d step = (newton ? curved : metric).ldlt().solve(slope);
+    if (step.norm() < 1e-14) break;
+    const bool last = newton && step.norm() < 1e-7;  // its square is below rounding; the distance no longer tells
+    double length = std::min(1.0, 0.5 / step.norm());
+    bool nearer = false;
+    for (int half = 0; half < 30 && !nearer; ++half, length /= 2) {
+      const Vec3 trial = (s + length * (step[0] * e_t + step[1] * e_f)).normalized();
+      SecondDerivatives z = sample_points_second(x, trial.transpose());
+      const double d = distance_of(z);
+      if (d < distance || last) {
+        s = trial;
+        y = std::move(z);
+        nearer = true;
+        distance = d;
+      }
+    }
+    if (!nearer || last) break;
+  }
+  const Vec3 position = y.value.row(0).transpose();
+  return {s, position, distance, normal_at(x, beside_the_pole(s)).dot(target - position) < 0};
+}
+
+namespace {
+
+/// The graded grid about the nearest point, in the frame where that is the pole: nt x nf arrays.
+struct GradedGrid {
+  int p;
+  double theta0, phi0;
+  LegendreTable table;  ///< of the graded colatitudes
+  Matrix fourier;       ///< (2p+1) x nf
+  Eigen::ArrayXXd r[3], n[3], rr, area;  ///< target - y, weighted normal, |r|^2, dA
+};
+
+/// Separable synthesis of one field given by its coefficients at the pole's frame: nt x (2p+1) spectra.
+Matrix spectra(const GradedGrid& g, const Matrix& values, const Matrix& legendre, int column) {
+  Matrix s(legendre.rows(), 2 * g.p + 1);
+  Vector c;
+  for (int m = -g.p; m <= g.p; ++m) {
+    const int k = std::abs(m), first = legendre_index(g.p, k, k), count = g.p - k + 1;
+    c.resize(count);
+    for (int n = k; n <= g.p; ++n) c[n - k] = values(coefficient_index(n, m), column);
+    s.col(g.p + m).noalias() = legendre.middleCols(first, count) * c;
+  }
+  return s;
+}
+
+GradedGrid graded_grid(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
+                       NearOrder order) {
+  const int p = plan.order(), nt = order.latitudes, nf = order.longitudes, width = 2 * p + 1;
+  const Vec3& s = nearest.parameter;
+  GradedGrid g{p, std::atan2(std::hypot(s[0], s[1]), s[2]), std::atan2(s[1], s[0]), {}, Matrix(width, nf), {}, {}, {}, {}};
+  const Matrix turned = plan.to_pole(resized(x, p).values, g.theta0, g.phi0);
+
+  // Graded colatitudes. The metric at the pole is that of the longer tangent: the narrower width in the parameter.
+  const Matrix pole_tangents = [&] {
+    Vector zero(1), quarter(2);
+    zero << 0;
+    quarter << 0, pi / 2;
+    return sample_grid({p, turned}, zero, quarter).t;
+  }();
+  const double metric = std::max(pole_tangents.row(0).norm(), pole_tangents.row(1).norm());
+  const double eps = std::max(nearest.distance / metric, 1e-12), a = std::asinh(pi / eps);
+  const GaussLegendre rule = gauss_legendre(nt);
+  Vector t(nt), weight(nt);
+  for (int i = 0; i < nt; ++i) {
+    const double u = 0.5 * (1 - std::cos(rule.theta[i]));
+    t[i] = eps * std::sinh(a * u);
+    weight[i] = 0.5 * rule.weight[i] * eps * a * std::cosh(a * u) * 2 * pi / nf;
+  }
+  g.table = legendre_table(p, t, 1);
+  Matrix slope(width, nf);
+  for (int j = 0; j < nf; ++j)
+    for (int m = 0; m <= p; ++m) {
+      const double f = 2 * pi * j / nf, k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
+      const double c = k * std::cos(m * f), d = k * std::sin(m * f);
+      g.fourier(p + m, j) = c, slope(p + m, j) = -m * d;
+      if (m > 0) g.fourier(p - m, j) = d, slope(p - m, j) = m * c;
+    }
+  Matrix y_t[3], y_f[3];
+  for (int d = 0; d < 3; ++d) {
+    const Matrix value = spectra(g, turned, g.table.value, d);
+    g.r[d] = target[d] - (value * g.fourier).array();
+    y_t[d] = spectra(g, turned, g.table.d1, d) * g.fourier;
+    y_f[d] = value * slope;
+  }
+  for (int d = 0; d < 3; ++d) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    g.n[d] = (y_t[e].array() * y_f[f].array() - y_t[f].array() * y_f[e].array()).colwise() * weight.array();
+  }
+  g.rr = g.r[0].square() + g.r[1].square() + g.r[2].square();
+  g.area = (g.n[0].square() + g.n[1].square() + g.n[2].square()).sqrt();
+  return g;
+}
+
+/// The outer part of the double layer's kernel with its weights.
+Eigen::ArrayXXd dual_outer(const GradedGrid& g, const Eigen::ArrayXXd& inverse) {
+  const Eigen::ArrayXXd rn = g.r[0] * g.n[0] + g.r[1] * g.n[1] + g.r[2] * g.n[2];
+  return stresslet(inverse, Eigen::ArrayXXd(stresslet_factor * rn));
+}
+
+/// The kernel of the single layer with its weights.
+KernelTensor<Eigen::ArrayXXd> single_kernel(const GradedGrid& g, const Eigen::ArrayXXd& inverse) {
+  return stokeslet(inverse, Eigen::ArrayXXd(stokeslet_factor * g.area));
+}
+
+}  // namespace
+
+PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
+                  NearOrder order, bool with_double) {
+  const GradedGrid g = graded_grid(plan, x, target, nearest, order);
+  const int p = g.p, nc = coefficient_count(p);
+  const Eigen::ArrayXXd inverse = g.rr.rsqrt();
+  const KernelTensor<Eigen::ArrayXXd> single = single_kernel(g, inverse);
+  const Eigen::ArrayXXd outer = with_double ? dual_outer(g, inverse) : Eigen::ArrayXXd();
+
+  // The transposed synthesis of the 12 components.
+  PointRow row{Matrix(nc, 6), with_double ? Matrix(nc, 6) : Matrix()};
+  int block = 0;
+  for (int c = 0; c < 3; ++c)
+    for (int e = c; e < 3; ++e, ++block) {
+      const Eigen::ArrayXXd rce = g.r[c] * g.r[e];
+      for (const bool dual : {false, true}) {
+        if (dual && !with_double) continue;
+        const Matrix kernel = dual     ? Matrix(outer * rce)
+                              : c == e ? Matrix(single.even + single.outer * rce)
+                                       : Matrix(single.outer * rce);
+        const Matrix spectrum = kernel * g.fourier.transpose();  // nt x (2p+1)
+        auto out = (dual ? row.dual : row.single).col(block);
+        for (int m = -p; m <= p; ++m) {
+          const int k = std::abs(m), first = legendre_index(p, k, k), count = p - k + 1;
+          const Vector column = g.table.value.middleCols(first, count).transpose() * spectrum.col(p + m);
+          for (int l = k; l <= p; ++l) out[coefficient_index(l, m)] = column[l - k];
+        }
+      }
+    }
+  row.single = plan.from_pole(row.single, g.theta0, g.phi0);
+  if (with_double) row.dual = plan.from_pole(row.dual, g.theta0, g.phi0);
+  return row;
+}
+
+Vec3 near_velocity(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
+                   NearOrder order, const Coefficients& force, const Coefficients* dual) {
+  const GradedGrid g = graded_grid(plan, x, target, nearest, order);
+  const auto sampled = [&](const Coefficients& density) {
+    const Matrix turned = plan.to_pole(resized(density, g.p).values, g.theta0, g.phi0);
+    std::array<Eigen::ArrayXXd, 3> values;
+    for (int d = 0; d < 3; ++d) values[d] = (spectra(g, turned, g.table.value, d) * g.fourier).array();
+    return values;
+  };
+  const Eigen::ArrayXXd inverse = g.rr.rsqrt();
+  const KernelTensor<Eigen::ArrayXXd> single = single_kernel(g, inverse);
+  const auto f = sampled(force);
+  Eigen::ArrayXXd along = single.outer * (g.r[0] * f[0] + g.r[1] * f[1] + g.r[2] * f[2]);
+  if (dual) {
+    const auto u = sampled(*dual);
+    along += dual_outer(g, inverse) * (g.r[0] * u[0] + g.r[1] * u[1] + g.r[2] * u[2]);
+  }
+  Vec3 velocity;
+  for (int d = 0; d < 3; ++d) velocity[d] = (single.even * f[d] + along * g.r[d]).sum();
+  return velocity;
+}
+
+Vec3 apply_row(const Matrix& row, const Matrix& density) {
+  const Eigen::Matrix<double, 6, 3> k = row.transpose() * density;
+  return {k(0, 0) + k(1, 1) + k(2, 2), k(1, 0) + k(3, 1) + k(4, 2), k(2, 0) + k(4, 1) + k(5, 2)};
+}
+
+}  // namespace sim

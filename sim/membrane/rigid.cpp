@@ -1,0 +1,120 @@
+#include "sim/membrane/rigid.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+/// Coefficient of Y_00 of the constant 1.
+const double constant = std::sqrt(4 * std::numbers::pi);
+
+Eigen::Matrix3d cross_matrix(const Vec3& w) {
+  Eigen::Matrix3d m;
+  m << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
+  return m;
+}
+
+}  // namespace
+
+RigidBody rigid_body(const Coefficients& x) {
+  RigidBody b{x.values.row(0).transpose() / constant, x, {}};
+  b.arm.values.row(0).setZero();
+  const Eigen::Matrix3d second = b.arm.values.transpose() * b.arm.values;
+  b.inverse_inertia = (second.trace() * Eigen::Matrix3d::Identity() - second).inverse();
+  return b;
+}
+
+RigidMotion rigid_part(const RigidBody& b, const Coefficients& u) {
+  // moment = sum of arm x u, from the antisymmetric part of arm^T u
+  const Eigen::Matrix3d m = b.arm.values.transpose() * u.values;
+  const Vec3 moment(m(1, 2) - m(2, 1), m(2, 0) - m(0, 2), m(0, 1) - m(1, 0));
+  return {u.values.row(0).transpose() / constant, b.inverse_inertia * moment, b.centre};
+}
+
+Coefficients rigid_velocity(const RigidBody& b, const RigidMotion& r) {
+  Coefficients u{b.arm.order, b.arm.values * cross_matrix(r.rotation).transpose()};
+  u.values.row(0) += constant * r.at(b.centre).transpose();
+  return u;
+}
+
+Coefficients without_rigid_part(const RigidBody& b, const Coefficients& u) {
+  return {u.order, u.values - rigid_velocity(b, rigid_part(b, u)).values};
+}
+
+RigidMotion shape_motion(const RigidBody& b, const Geometry& g, const Matrix& u) {
+  constexpr double eta = 0.03;
+  // Rotations are taken in units of the size, so that the six unknowns are all velocities.
+  const double size = 1 / std::sqrt(b.inverse_inertia.trace());
+  Eigen::Matrix<double, 6, 6> left = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  for (Eigen::Index k = 0; k < g.dA.size(); ++k) {
+    const Vec3 n = g.n.row(k).transpose(), v = u.row(k).transpose(), arm = (g.x.value.row(k).transpose() - b.centre) / size;
+    Eigen::Matrix<double, 3, 6> motions;
+    motions << Eigen::Matrix3d::Identity(), -cross_matrix(arm);
+    const Eigen::Matrix<double, 1, 6> along = n.transpose() * motions;
+    left += g.dA[k] * ((1 - eta) * along.transpose() * along + eta * motions.transpose() * motions);
+    right += g.dA[k] * ((1 - eta) * v.dot(n) * along.transpose() + eta * motions.transpose() * v);
+  }
+  const Eigen::Matrix<double, 6, 1> r = left.ldlt().solve(right);
+  return {r.head<3>(), r.tail<3>() / size, b.centre};
+}
+
+Eigen::Matrix3d mean_gradient(const RigidBody& b, const Coefficients& u) {
+  return ((b.arm.values.transpose() * b.arm.values).ldlt().solve(b.arm.values.transpose() * u.values)).transpose();
+}
+
+Frame extrapolated(const Frame& a, const Frame& b, double share) {
+  const RigidMotion before = b.at(a.motion.centre);
+  return {{a.motion.translation + share * (a.motion.translation - before.translation),
+           a.motion.rotation + share * (a.motion.rotation - before.rotation), a.motion.centre},
+          a.drift};
+}
+
+namespace {
+
+Eigen::Matrix3d turn(const Frame& frame, double time) {
+  const double angle = frame.motion.rotation.norm() * time;
+  return angle == 0 ? Eigen::Matrix3d::Identity()
+                    : Eigen::AngleAxisd(angle, frame.motion.rotation.normalized()).toRotationMatrix();
+}
+
+/// exp(a), and its mean over the way, the integral of exp(a s) over s from 0 to 1: by their series for a/2^k, doubled k times.
+struct Exponential {
+  Eigen::Matrix3d whole, mean;
+};
+Exponential exponential(const Eigen::Matrix3d& a) {
+  int halvings = 0;
+  while (std::ldexp(a.norm(), -halvings) > 0.25) ++halvings;
+  const Eigen::Matrix3d part = a * std::ldexp(1.0, -halvings), unit = Eigen::Matrix3d::Identity();
+  Exponential e{unit, unit};
+  Eigen::Matrix3d term = unit;
+  for (int n = 1; n <= 14; ++n) {  // 0.25^14 / 14! is far below rounding
+    term = (term * part / n).eval();
+    e.whole += term;
+    e.mean += term / (n + 1);
+  }
+  for (int k = 0; k < halvings; ++k) {
+    e.mean = (0.5 * (unit + e.whole) * e.mean).eval();
+    e.whole = (e.whole * e.whole).eval();
+  }
+  return e;
+}
+
+}  // namespace
+
+Coefficients carried(const Frame& frame, double time, const Coefficients& x) {
+  const Vec3 centre = x.values.row(0).transpose() / constant;
+  Coefficients moved{x.order, x.values * turn(frame, time).transpose()};
+  // centre' = V + drift (centre - where it is now), V its velocity now
+  const Vec3 shift = exponential(frame.drift * time).mean * (time * frame.at(centre).translation);
+  moved.values.row(0) = constant * (centre + shift).transpose();
+  return moved;
+}
+
+Coefficients turned(const Frame& frame, double time, const Coefficients& u) {
+  return {u.order, u.values * turn(frame, time).transpose()};
+}
+
+}  // namespace sim

@@ -1,0 +1,65 @@
+#include "sim/membrane/waves.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+/// C of the header: with A the mean over the sphere of the turned inverse metric, a 3 x 3 tangential tensor, the least
+/// squares fit of A by C between tangential projections is C = (15/7) (A - (trace C)/15), trace C = (3/2) trace A.
+Eigen::Matrix3d turned_metric(const Basis& basis, const Geometry& g) {
+  Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+  for (int j = 0; j < basis.longitudes(); ++j)
+    for (int i = 0; i < basis.latitudes(); ++i) {
+      const int k = i + basis.latitudes() * j;
+      const auto [e_t, e_f, s] = sphere_frame(unit_vector(basis.theta()[i], basis.phi()[j]));
+      mean += basis.weights()[k] / (4 * std::numbers::pi) *
+              (g.lap_tt[k] * e_f * e_f.transpose() -
+               0.5 * s * g.lap_tf[k] * (e_t * e_f.transpose() + e_f * e_t.transpose()) +
+               s * s * g.lap_ff[k] * e_t * e_t.transpose());
+    }
+  return 15.0 / 7 * (mean - mean.trace() / 10 * Eigen::Matrix3d::Identity());
+}
+
+}  // namespace
+
+SurfaceWaves surface_waves(Plans& plans, const Coefficients& position) {
+  const int p = position.order;
+  const Basis& basis = plans.basis(p + 1, p + 1);
+  const Geometry g = geometry(basis, resized(position, p + 1));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(turned_metric(basis, g));
+  const RotationPlan& rotation = plans.rotation(p + 1);
+  SurfaceWaves waves{basis, g.n, {}, {}};
+  for (int n = 0; n <= p + 1; ++n) {
+    const auto& L = rotation.generators(n);
+    Matrix laplacian = Matrix::Zero(2 * n + 1, 2 * n + 1);  // with the sign that makes it positive
+    for (int a = 0; a < 3; ++a) {
+      const Vec3 e = axes.eigenvectors().col(a);
+      const Matrix turn = e[0] * L[0] + e[1] * L[1] + e[2] * L[2];
+      laplacian += std::max(axes.eigenvalues()[a], 0.0) * turn.transpose() * turn;
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix> modes(laplacian);
+    waves.modes.push_back(modes.eigenvectors());
+    waves.numbers.push_back(modes.eigenvalues().cwiseMax(0).cwiseSqrt());
+  }
+  return waves;
+}
+
+Matrix truncated_overlap(const SurfaceWaves& w, int first) {
+  const int p = w.basis.order() - 1, nc = coefficient_count(p), below = first * first;
+  const int count = coefficient_count(p + 1) - below;
+  Matrix edge = Matrix::Zero(coefficient_count(p + 1), count);
+  edge.bottomRows(count).setIdentity();
+  const Matrix psi = w.basis.synthesize({p + 1, std::move(edge)}).values;
+  Matrix overlap = Matrix::Zero(count, count);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Matrix kept =
+        w.basis.analyze(Matrix(psi.array().colwise() * w.n.col(axis).array())).values.topRows(nc);
+    overlap.selfadjointView<Eigen::Lower>().rankUpdate(kept.transpose());
+  }
+  return overlap.selfadjointView<Eigen::Lower>();
+}
+
+}  // namespace sim

@@ -1,0 +1,394 @@
+#include "sim/sphere/basis.h"
+
+#include <fftw3.h>
+
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+
+namespace sim {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Up to this degree a dense Fourier product beats FFTW's real transforms (docs/performance.md has the measurement).
+constexpr int dense_fourier_limit = 40;
+
+/// Normalisation of the longitude factor: 1/sqrt(2 pi) for m = 0, 1/sqrt(pi) otherwise.
+double longitude_norm(int m) { return m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi); }
+
+std::mutex& planner_mutex() {  // FFTW's planner is the one thing in it that is not thread-safe
+  static std::mutex mutex;
+  return mutex;
+}
+
+}  // namespace
+
+// Longitude spectra are held as nlat x (2p+1) blocks, one a field: columns 0..p are the cosines, p+m the sine of m phi.
+struct Basis::Plan {
+  int p = 0, q = 0, nlat = 0, nlon = 0;
+  Vector theta, phi, weights, sin_theta;
+  std::vector<Matrix> synthesis;  ///< per m: 3 nlat x (p-m+1), rows P, P', P'' stacked
+  std::vector<Matrix> analysis;   ///< per m: (p-m+1) x nlat, Gauss weights included
+  Matrix fourier[3];              ///< (2p+1) x nlon: basis functions in phi and their two derivatives
+  Matrix fourier_analysis;        ///< nlon x (2p+1)
+  fftw_plan backward = nullptr, forward = nullptr;  ///< one field: nlat transforms of length nlon
+
+  Plan(int order, int grid_order);
+  ~Plan();
+  Plan(const Plan&) = delete;
+  bool dense() const { return p <= dense_fourier_limit; }
+
+  Matrix latitude(const Coefficients& c, int tables) const;
+  void longitude(const Matrix& spectrum, int table, int derivative, Matrix& out) const;
+  Coefficients analyze(const Matrix& samples) const;
+};
+
+Basis::Plan::Plan(int order, int grid_order)
+    : p(order), q(grid_order), nlat(grid_order + 1), nlon(2 * grid_order + 2) {
+  if (order < 0 || grid_order < order) throw std::invalid_argument("Basis: the grid order must be at least the degree");
+  const GaussLegendre rule = gauss_legendre(nlat);
+  theta = rule.theta;
+  phi = Vector::LinSpaced(nlon, 0, 2 * pi * (nlon - 1) / nlon);
+  weights.resize(nlat * nlon);
+  sin_theta.resize(nlat * nlon);
+  for (int j = 0; j < nlon; ++j)
+    for (int i = 0; i < nlat; ++i) {
+      weights[i + nlat * j] = rule.weight[i] * 2 * pi / nlon;
+      sin_theta[i + nlat * j] = std::sin(theta[i]);
+    }
+  const LegendreTable table = legendre_table(p, theta);
+  for (int m = 0; m <= p; ++m) {
+    const int first = legendre_index(p, m, m), count = p - m + 1;
+    Matrix s(3 * nlat, count);
+    s.topRows(nlat) = table.value.middleCols(first, count);
+    s.middleRows(nlat, nlat) = table.d1.middleCols(first, count);
+    s.bottomRows(nlat) = table.d2.middleCols(first, count);
+    analysis.push_back(table.value.middleCols(first, count).transpose() * rule.weight.asDiagonal());
+    synthesis.push_back(std::move(s));
+  }
+  if (dense()) {
+    for (auto& f : fourier) f.setZero(2 * p + 1, nlon);
+    for (int j = 0; j < nlon; ++j)
+      for (int m = 0; m <= p; ++m) {
+        // The angle is reduced by whole turns first, so that mirrored columns agree to the last bit.
+        const double angle = 2 * pi * ((std::int64_t(m) * j) % nlon) / nlon, k = longitude_norm(m);
+        const double c = k * std::cos(angle), s = k * std::sin(angle);
+        fourier[0](m, j) = c;
+        fourier[1](m, j) = -m * s;
+        fourier[2](m, j) = -double(m) * m * c;
+        if (m == 0) continue;
+        fourier[0](p + m, j) = s;
+        fourier[1](p + m, j) = m * c;
+        fourier[2](p + m, j) = -double(m) * m * s;
+      }
+    fourier_analysis = fourier[0].transpose() * (2 * pi / nlon);
+  } else {
+    Matrix in(nlat, nlon), out(nlat, nlon);
+    const fftw_iodim dimension{nlon, nlat, nlat}, many{nlat, 1, 1};
+    const fftw_r2r_kind to_points = FFTW_HC2R, to_spectrum = FFTW_R2HC;
+    const unsigned flags = FFTW_ESTIMATE | FFTW_UNALIGNED;  // ESTIMATE: the same plan in every run
+    const std::lock_guard lock(planner_mutex());
+    backward = fftw_plan_guru_r2r(1, &dimension, 1, &many, in.data(), out.data(), &to_points, flags);
+    forward = fftw_plan_guru_r2r(1, &dimension, 1, &many, in.data(), out.data(), &to_spectrum, flags);
+  }
+}
+
+Basis::Plan::~Plan() {
+  const std::lock_guard lock(planner_mutex());
+  if (backward) fftw_destroy_plan(backward);
+  if (forward) fftw_destroy_plan(forward);
+}
+
+/// Legendre half: (tables nlat) x (fields (2p+1)); `tables` counts how many of P, P', P'' are wanted.
+Matrix Basis::Plan::latitude(const Coefficients& c, int tables) const {
+  if (c.order > p) throw std::invalid_argument("Basis: coefficients of a higher degree than the plan's");
+  const int fields = int(c.values.cols()), width = 2 * p + 1, degree = c.order;
+  Matrix spectrum = Matrix::Zero(tables * nlat, fields * width);
+  Matrix block, product;
+  for (int m = 0; m <= degree; ++m) {
+    const int count = degree - m + 1, parts = m == 0 ? 1 : 2;
+    block.resize(count, parts * fields);
+    for (int f = 0; f < fields; ++f)
+      for (int n = m; n <= degree; ++n) {
+        block(n - m, f) = c.values(coefficient_index(n, m), f);
+        if (m > 0) block(n - m, fields + f) = c.values(coefficient_index(n, -m), f);
+      }
+    product.noalias() = synthesis[m].topLeftCorner(tables * nlat, count) * block;
+    for (int f = 0; f < fields; ++f) {
+      spectrum.col(f * width + m) = product.col(f);
+      if (m > 0) spectrum.col(f * width + p + m) = product.col(fields + f);
+    }
+  }
+  return spectrum;
+}
+
+/// Fourier half: samples of the given derivative in phi of table P (0), P' (1) or P'' (2), points x fields.
+void Basis::Plan::longitude(const Matrix& spectrum, int table, int derivative, Matrix& out) const {
+  const int width = 2 * p + 1, fields = int(spectrum.cols()) / width;
+  out.resize(nlat * nlon, fields);
+  Matrix scratch;
+  for (int f = 0; f < fields; ++f) {
+    const auto block = spectrum.block(table * nlat, f * width, nlat, width);
+    Eigen::Map<Matrix> points(out.col(f).data(), nlat, nlon);
+    if (dense()) {
+      points.noalias() = block * fourier[derivative];
+      continue;
+    }
+    scratch.setZero(nlat, nlon);  // half-complex order: real parts 0.., imaginary part of m at nlon - m
+    scratch.col(0) = block.col(0) * (derivative == 0 ? longitude_norm(0) : 0.0);
+    for (int m = 1; m <= p; ++m) {
+      const double k = 0.5 * longitude_norm(m) * std::pow(m, derivative);
+      const auto c = block.col(m), s = block.col(p + m);
+      if (derivative == 0) scratch.col(m) = k * c, scratch.col(nlon - m) = -k * s;
+      if (derivative == 1) scratch.col(m) = k * s, scratch.col(nlon - m) = k * c;
+      if (derivative == 2) scratch.col(m) = -k * c, scratch.col(nlon - m) = k * s;
+    }
+    fftw_execute_r2r(backward, scratch.data(), out.col(f).data());
+  }
+}
+
+Coefficients Basis::Plan::analyze(const Matrix& samples) const {
+  if (samples.rows() != nlat * nlon) throw std::invalid_argument("Basis: samples are not on this grid");
+  const int width = 2 * p + 1, fields = int(samples.cols());
+  Matrix spectrum(nlat, fields * width);
+  Matrix in, out;
+  for (int f = 0; f < fields; ++f) {
+    auto block = spectrum.middleCols(f * width, width);
+    const Eigen::Map<const Matrix> points(samples.col(f).data(), nlat, nlon);
+    if (dense()) {
+      block.noalias() = points * fourier_analysis;
+      continue;
+    }
+    in = points;
+    out.resize(nlat, nlon);
+    fftw_execute_r2r(forward, in.data(), out.data());
+    for (int m = 0; m <= p; ++m) {
+      const double k = longitude_norm(m) * 2 * pi / nlon;
+      block.col(m) = k * out.col(m);
+      if (m > 0) block.col(p + m) = -k * out.col(nlon - m);
+    }
+  }
+  Coefficients c{p, Matrix(coefficient_count(p), fields)};
+  Matrix part(nlat, 2 * fields), product;
+  for (int m = 0; m <= p; ++m) {
+    for (int f = 0; f < fields; ++f) {
+      part.col(f) = spectrum.col(f * width + m);
+      if (m > 0) part.col(fields + f) = spectrum.col(f * width + p + m);
+    }
+    product.noalias() = analysis[m] * part.leftCols(m == 0 ? fields : 2 * fields);
+    for (int f = 0; f < fields; ++f)
+      for (int n = m; n <= p; ++n) {
+        c.values(coefficient_index(n, m), f) = product(n - m, f);
+        if (m > 0) c.values(coefficient_index(n, -m), f) = product(n - m, fields + f);
+      }
+  }
+  return c;
+}
+
+Basis::Basis(int order, int grid_order) : plan_(std::make_unique<Plan>(order, grid_order)) {}
+Basis::~Basis() = default;
+Basis::Basis(Basis&&) noexcept = default;
+
+int Basis::order() const { return plan_->p; }
+int Basis::grid_order() const { return plan_->q; }
+int Basis::latitudes() const { return plan_->nlat; }
+int Basis::longitudes() const { return plan_->nlon; }
+int Basis::points() const { return plan_->nlat * plan_->nlon; }
+const Vector& Basis::theta() const { return plan_->theta; }
+const Vector& Basis::phi() const { return plan_->phi; }
+const Vector& Basis::weights() const { return plan_->weights; }
+const Vector& Basis::sin_theta() const { return plan_->sin_theta; }
+
+GridValues Basis::synthesize(const Coefficients& c) const {
+  GridValues g{plan_->q, {}};
+  plan_->longitude(plan_->latitude(c, 1), 0, 0, g.values);
+  return g;
+}
+
+FirstDerivatives Basis::first(const Coefficients& c) const {
+  const Matrix spectrum = plan_->latitude(c, 2);
+  FirstDerivatives d;
+  plan_->longitude(spectrum, 0, 0, d.value);
+  plan_->longitude(spectrum, 1, 0, d.t);
+  plan_->longitude(spectrum, 0, 1, d.f);
+  return d;
+}
+
+SecondDerivatives Basis::second(const Coefficients& c) const {
+  const Matrix spectrum = plan_->latitude(c, 3);
+  SecondDerivatives d;
+  plan_->longitude(spectrum, 0, 0, d.value);
+  plan_->longitude(spectrum, 1, 0, d.t);
+  plan_->longitude(spectrum, 0, 1, d.f);
+  plan_->longitude(spectrum, 2, 0, d.tt);
+  plan_->longitude(spectrum, 1, 1, d.tf);
+  plan_->longitude(spectrum, 0, 2, d.ff);
+  return d;
+}
+
+FirstDerivatives Basis::slopes(const Coefficients& c) const {
+  const Matrix spectrum = plan_->latitude(c, 2);
+  FirstDerivatives d;
+  plan_->longitude(spectrum, 1, 0, d.t);
+  plan_->longitude(spectrum, 0, 1, d.f);
+  return d;
+}
+
+SecondDerivatives Basis::curvatures(const Coefficients& c) const {
+  const Matrix spectrum = plan_->latitude(c, 3);
+  SecondDerivatives d;
+  plan_->longitude(spectrum, 2, 0, d.tt);
+  plan_->longitude(spectrum, 1, 1, d.tf);
+  plan_->longitude(spectrum, 0, 2, d.ff);
+  return d;
+}
+
+Coefficients Basis::analyze(const GridValues& g) const { return plan_->analyze(g.values); }
+Coefficients Basis::analyze(const Matrix& samples) const { return plan_->analyze(samples); }
+
+Vec3 unit_vector(double theta, double phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+Matrix grid_directions(const Basis& basis) {
+  Matrix s(basis.points(), 3);
+  for (int j = 0; j < basis.longitudes(); ++j)
+    for (int i = 0; i < basis.latitudes(); ++i)
+      s.row(i + basis.latitudes() * j) = unit_vector(basis.theta()[i], basis.phi()[j]).transpose();
+  return s;
+}
+
+SphereFrame sphere_frame(const Vec3& s) {
+  const double rho = std::max(std::hypot(s[0], s[1]), 1e-150);
+  const double c = s[0] / rho, d = s[1] / rho;
+  return {Vec3(s[2] * c, s[2] * d, -rho), Vec3(-d, c, 0), rho};
+}
+
+Coefficients resized(const Coefficients& c, int order) {
+  Coefficients r{order, Matrix::Zero(coefficient_count(order), c.values.cols())};
+  const int rows = coefficient_count(std::min(order, c.order));
+  r.values.topRows(rows) = c.values.topRows(rows);
+  return r;
+}
+
+FirstDerivatives sample_grid(const Coefficients& c, const Vector& theta, const Vector& phi) {
+  const int p = c.order, fields = int(c.values.cols()), nlat = int(theta.size()), nlon = int(phi.size());
+  const LegendreTable table = legendre_table(p, theta, 1);
+  FirstDerivatives d{Matrix::Zero(nlat * nlon, fields), Matrix::Zero(nlat * nlon, fields),
+                     Matrix::Zero(nlat * nlon, fields)};
+  Matrix fourier(2 * p + 1, nlon), derivative(2 * p + 1, nlon);
+  for (int j = 0; j < nlon; ++j)
+    for (int m = 0; m <= p; ++m) {
+      const double k = longitude_norm(m), co = k * std::cos(m * phi[j]), si = k * std::sin(m * phi[j]);
+      fourier(p + m, j) = co, derivative(p + m, j) = -m * si;
+      if (m > 0) fourier(p - m, j) = si, derivative(p - m, j) = m * co;
+    }
+  Matrix value(nlat, 2 * p + 1), slope(nlat, 2 * p + 1);
+  for (int f = 0; f < fields; ++f) {
+    for (int m = -p; m <= p; ++m) {
+      const int a = std::abs(m), first = legendre_index(p, a, a), count = p - a + 1;
+      Vector column(count);
+      for (int n = a; n <= p; ++n) column[n - a] = c.values(coefficient_index(n, m), f);
+      value.col(p + m).noalias() = table.value.middleCols(first, count) * column;
+      slope.col(p + m).noalias() = table.d1.middleCols(first, count) * column;
+    }
+    Eigen::Map<Matrix>(d.value.col(f).data(), nlat, nlon).noalias() = value * fourier;
+    Eigen::Map<Matrix>(d.t.col(f).data(), nlat, nlon).noalias() = slope * fourier;
+    Eigen::Map<Matrix>(d.f.col(f).data(), nlat, nlon).noalias() = value * derivative;
+  }
+  return d;
+}
+
+namespace {
+
+struct BasisFunctions {
+  Matrix value, t, f, tt, tf, ff;  ///< count x (p+1)^2
+};
+
+BasisFunctions basis_functions(int p, const Matrix& directions, int derivatives) {
+  const Eigen::Index count = directions.rows();
+  Vector theta(count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    theta[k] = std::atan2(std::hypot(directions(k, 0), directions(k, 1)), directions(k, 2));
+  const LegendreTable table = legendre_table(p, theta, derivatives);
+  BasisFunctions b;
+  Matrix* const all[] = {&b.value, &b.t, &b.f, &b.tt, &b.tf, &b.ff};
+  for (int k = 0; k < (derivatives + 1) * (derivatives + 2) / 2; ++k) all[k]->resize(count, coefficient_count(p));
+  Eigen::ArrayXd phi(count);
+  for (Eigen::Index k = 0; k < count; ++k) phi[k] = std::atan2(directions(k, 1), directions(k, 0));
+  for (int m = 0; m <= p; ++m) {
+    const Eigen::ArrayXd co = longitude_norm(m) * (m * phi).cos(), si = longitude_norm(m) * (m * phi).sin();
+    for (int n = m; n <= p; ++n) {
+      const int column = legendre_index(p, n, m), c = coefficient_index(n, m), s = coefficient_index(n, -m);
+      const auto value = table.value.col(column).array();
+      b.value.col(c) = co * value;
+      if (m > 0) b.value.col(s) = si * value;
+      if (derivatives < 1) continue;
+      const auto slope = table.d1.col(column).array();
+      b.t.col(c) = co * slope;
+      b.f.col(c) = -m * si * value;
+      if (m > 0) b.t.col(s) = si * slope;
+      if (m > 0) b.f.col(s) = m * co * value;
+      if (derivatives < 2) continue;
+      const auto curvature = table.d2.col(column).array();
+      b.tt.col(c) = co * curvature;
+      b.tf.col(c) = -m * si * slope;
+      b.ff.col(c) = -m * m * co * value;
+      if (m == 0) continue;
+      b.tt.col(s) = si * curvature;
+      b.tf.col(s) = m * co * slope;
+      b.ff.col(s) = -m * m * si * value;
+    }
+  }
+  return b;
+}
+
+constexpr Eigen::Index point_batch = 256;  ///< keeps the tables of a batch in cache
+
+}  // namespace
+
+Matrix basis_functions(int p, const Matrix& directions) { return basis_functions(p, directions, 0).value; }
+
+FirstDerivatives sample_points_first(const Coefficients& c, const Matrix& directions) {
+  const Eigen::Index count = directions.rows(), fields = c.values.cols();
+  FirstDerivatives d{Matrix(count, fields), Matrix(count, fields), Matrix(count, fields)};
+  for (Eigen::Index start = 0; start < count; start += point_batch) {
+    const Eigen::Index size = std::min(point_batch, count - start);
+    const BasisFunctions b = basis_functions(c.order, directions.middleRows(start, size), 1);
+    d.value.middleRows(start, size).noalias() = b.value * c.values;
+    d.t.middleRows(start, size).noalias() = b.t * c.values;
+    d.f.middleRows(start, size).noalias() = b.f * c.values;
+  }
+  return d;
+}
+
+SecondDerivatives sample_points_second(const Coefficients& c, const Matrix& directions) {
+  const Eigen::Index count = directions.rows(), fields = c.values.cols();
+  SecondDerivatives d;
+  for (Matrix* m : {&d.value, &d.t, &d.f, &d.tt, &d.tf, &d.ff}) m->resize(count, fields);
+  for (Eigen::Index start = 0; start < count; start += point_batch) {
+    const Eigen::Index size = std::min(point_batch, count - start);
+    const BasisFunctions b = basis_functions(c.order, directions.middleRows(start, size), 2);
+    d.value.middleRows(start, size).noalias() = b.value * c.values;
+    d.t.middleRows(start, size).noalias() = b.t * c.values;
+    d.f.middleRows(start, size).noalias() = b.f * c.values;
+    d.tt.middleRows(start, size).noalias() = b.tt * c.values;
+    d.tf.middleRows(start, size).noalias() = b.tf * c.values;
+    d.ff.middleRows(start, size).noalias() = b.ff * c.values;
+  }
+  return d;
+}
+
+Matrix sample_points(const Coefficients& c, const Matrix& directions) {
+  Matrix value(directions.rows(), c.values.cols());
+  for (Eigen::Index start = 0; start < directions.rows(); start += point_batch) {
+    const Eigen::Index size = std::min(point_batch, directions.rows() - start);
+    value.middleRows(start, size).noalias() = basis_functions(c.order, directions.middleRows(start, size)) * c.values;
+  }
+  return value;
+}
+
+}  // namespace sim

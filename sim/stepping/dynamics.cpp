@@ -1,0 +1,169 @@
+#include "sim/stepping/dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+namespace sim {
+
+namespace {
+
+constexpr int most_upsampling = 8;  // that a scene may ask for, and Algorithm 1 chooses: a forged record makes no vast grid
+constexpr double largest_number = 1e150;  // the square of every number is one, too
+
+/// One list of members for both directions.
+template <class Archive, class D>
+void transfer(Archive& ar, D& d) {
+  ar(d.step), ar(d.saves), ar(d.time), ar(d.dt_limit), ar(d.calm);
+  ar.size(d.vesicles);
+  for (auto& v : d.vesicles) visit(v, [&](Part, auto& member) { ar(member); });
+}
+
+template <class Archive, class F>
+void transfer_frame(Archive& ar, F& frame) {
+  for (auto* x : {&frame.motion.translation, &frame.motion.rotation, &frame.motion.centre})
+    for (int k = 0; k < 3; ++k) ar((*x)[k]);
+  for (int k = 0; k < 9; ++k) ar(frame.drift(k));
+}
+
+struct Writer {
+  std::vector<double> numbers;
+  template <class T>
+    requires std::is_arithmetic_v<T>
+  void operator()(const T& value) { numbers.push_back(double(value)); }  // integers here stay far below 2^53
+  void operator()(const Matrix& m) {
+    (*this)(m.rows()), (*this)(m.cols());
+    numbers.insert(numbers.end(), m.data(), m.data() + m.size());
+  }
+  void operator()(const Coefficients& c) { (*this)(c.order), (*this)(c.values); }
+  void operator()(const Frame& frame) { transfer_frame(*this, frame); }
+  void operator()(const History& history) {
+    (*this)(history.levels.size());
+    for (const PastLevel& level : history.levels) visit_level(level, [this](const char*, const auto& part) { (*this)(part); });
+  }
+  void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
+};
+
+[[noreturn]] void refuse(const char* why) { throw std::runtime_error(why); }
+
+/// Each number is checked for what its type can hold, each size before anything of that size is made.
+struct Reader {
+  std::span<const double> numbers;
+  const TrajectoryLayout& layout;
+  std::size_t at = 0;
+
+  double next() {
+    if (at >= numbers.size()) refuse("it is cut short");
+    const double value = numbers[at++];
+    if (!(std::abs(value) <= largest_number)) refuse("a number in it is impossible");
+    return value;
+  }
+  double whole(double least, double largest) {
+    const double value = next();
+    if (!(value >= least && value <= largest && value == std::floor(value))) refuse("a count in it is impossible");
+    return value;
+  }
+  void operator()(double& value) { value = next(); }
+  void operator()(bool& value) { value = whole(0, 1) == 1; }
+  void operator()(int& value) { value = int(whole(0, std::numeric_limits<int>::max())); }
+  void operator()(std::int64_t& value) { value = std::int64_t(whole(0, 0x1p53)); }
+  void operator()(Matrix& m) {
+    const double rows = whole(0, double(numbers.size())), columns = whole(0, double(numbers.size()));
+    if (rows * columns > double(numbers.size() - at)) refuse("it is cut short");  // behind the two
+    m = Eigen::Map<const Matrix>(numbers.data() + at, Eigen::Index(rows), Eigen::Index(columns));
+    if (!m.allFinite() || (m.array().abs() > largest_number).any()) refuse("a number in it is impossible");
+    at += std::size_t(m.size());
+  }
+  void operator()(Coefficients& c) {
+    c.order = int(whole(0, std::max(layout.order, layout.label_order)));
+    (*this)(c.values);
+    if (c.values.rows() != coefficient_count(c.order)) refuse("an order in it does not fit its numbers");
+  }
+  void operator()(Frame& frame) { transfer_frame(*this, frame); }
+  void operator()(History& history) {
+    history.levels.resize(std::size_t(whole(0, most_past_levels)));
+    for (PastLevel& level : history.levels) visit_level(level, [this](const char*, auto& part) { (*this)(part); });
+  }
+  void size(std::vector<VesicleDynamics>& v) { v.resize(std::size_t(whole(layout.vesicles, layout.vesicles))); }
+};
+
+bool is_field(const Coefficients& c, int order, int columns) { return c.order == order && c.values.cols() == columns; }
+
+void check(const VesicleDynamics& v, const TrajectoryLayout& layout) {
+  const int p = v.position.order;
+  if (p > layout.order) refuse("its fields are of different orders");
+  const auto look = [&]<class Member>(Part part, const Member& member) {
+    if constexpr (std::is_same_v<Member, Coefficients>) {
+      if (part == Part::label) {
+        if (!is_field(member, member.order, 3) || member.order > layout.label_order) refuse("its labels do not fit");
+      } else if (!is_field(member, p, part == Part::scalar ? 1 : 3)) {
+        refuse("its fields are of different orders");
+      }
+    } else if constexpr (std::is_same_v<Member, History>) {
+      for (const PastLevel& level : member.levels) {
+        if (!is_field(level.position, p, 3)) refuse("its fields are of different orders");
+        if (!(level.dt > 0)) refuse("a time in it is impossible");
+      }
+    } else if constexpr (std::is_same_v<Member, Matrix>) {
+      if (member.rows() != layout.tracers || member.cols() != 3) refuse("its tracers do not fit");
+    }
+  };
+  visit(v, look);
+  if (!(v.area > 0) || v.upsampling < 1 || v.upsampling > most_upsampling) refuse("a vesicle in it is impossible");
+}
+
+/// All vesicles have taken the same steps.
+void check_histories(const Dynamics& d) {
+  for (const VesicleDynamics& v : d.vesicles) {
+    const auto& levels = v.history.levels;
+    const auto& first = d.vesicles.front().history.levels;
+    if (!std::equal(levels.begin(), levels.end(), first.begin(), first.end(),
+                    [](const PastLevel& a, const PastLevel& b) { return a.dt == b.dt; }))
+      refuse("its vesicles have different pasts");
+  }
+}
+
+}  // namespace
+
+void carry(Plans& plans, const Relabelling& r, VesicleDynamics& v) {
+  const Coefficients before = v.position;
+  visit(v, [&]<class Member>(Part part, Member& member) {
+    if constexpr (std::is_same_v<Member, Coefficients>) {
+      member = pulled_back(plans, r, member);
+    } else if constexpr (std::is_same_v<Member, History>) {
+      carry(plans, r, member);
+    } else if constexpr (std::is_same_v<Member, Matrix>) {
+      if (part == Part::points) member = carried_points(r, before, v.position, member);
+    }
+  });
+}
+
+std::vector<double> serialised(const Dynamics& d) {
+  Writer writer;
+  writer(resume_version);
+  transfer(writer, d);
+  return std::move(writer.numbers);
+}
+
+std::size_t resume_numbers(const Dynamics& d, int past_levels) {
+  Dynamics full = d;
+  for (VesicleDynamics& v : full.vesicles)
+    while (static_cast<int>(v.history.levels.size()) < past_levels) v.history.levels.push_back({v.position, {}, {}, 1});
+  return serialised(full).size();
+}
+
+Dynamics deserialised(std::span<const double> numbers, const TrajectoryLayout& layout) {
+  Reader reader{numbers, layout};
+  if (reader.next() != resume_version) refuse("it is of another version");
+  Dynamics d;
+  transfer(reader, d);
+  if (reader.at != numbers.size()) refuse("there is more in it");
+  for (const VesicleDynamics& v : d.vesicles) check(v, layout);
+  check_histories(d);
+  if (d.saves < 1 || d.time < 0 || !(d.dt_limit > 0)) refuse("a time in it is impossible");
+  return d;
+}
+
+}  // namespace sim

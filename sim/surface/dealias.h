@@ -1,0 +1,21 @@
+// Dealiasing: the grid on which a surface of degree p is differentiated (Algorithm 1, Eqs. (28), (29)).
+#pragma once
+
+#include "sim/surface/geometry.h"
+#include "sim/layers/plans.h"
+
+namespace sim {
+
+/// Mean curvature computed on the q-grid and restricted to degree p.
+Coefficients mean_curvature(Plans&, const Coefficients& position, int grid_order);
+
+/// Algorithm 1: smallest rate v = 2, 3, ... for which the mean curvature of degree p changes by less than `tolerance`
+/// (relative, Eq. (28)) from rate v - 1 to v; `most` when none does.
+int upsampling_rate(Plans&, const Coefficients& position, double tolerance, int most = 8);
+
+/// Share of the mean curvature's spectrum in its last quarter of degrees, n > 3p/4: a measure of resolution. The mean
+/// is excluded; a spectrum below a hundredth of the mean counts as that large. `geometry`: of a surface of degree p,
+/// on the grid of `basis`.
+double curvature_tail(const Basis& basis, const Geometry& geometry);
+
+}  // namespace sim

@@ -1,0 +1,174 @@
+#include "sim/suspension/gap.h"
+
+#include "sim/layers/far_field.h"
+#include "sim/core/parallel.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace sim {
+
+namespace {
+
+/// Solid angle of a surface at x over 4 pi: 1 inside, 0 outside; by the smooth rule, so right to about one half near it.
+double winding(const Sources& s, const Vec3& x) {
+  double sum = 0;
+  for (Eigen::Index k = 0; k < s.points.rows(); ++k) {
+    const Vec3 r = s.points.row(k).transpose() - x;
+    sum += s.normals.row(k).dot(r) / std::pow(r.squaredNorm(), 1.5);
+  }
+  return sum / (4 * std::numbers::pi);
+}
+
+/// Two parameters on two surfaces, and Newton for the least distance between them.
+struct Approach {
+  Vec3 s, t;  ///< parameters on the first and the second surface
+  double distance = 0;
+};
+
+/// |x - y|^2 / 2 in tangent coordinates q about (s, t).
+struct ApproachSlope {
+  const Coefficients &x, &y;
+  Vec3 s, t, a1, a2, b1, b2;
+  ApproachSlope(const Coefficients& first, const Coefficients& second, const Approach& at)
+      : x(first), y(second), s(at.s), t(at.t), a1(s.unitOrthogonal()), a2(s.cross(a1)), b1(t.unitOrthogonal()),
+        b2(t.cross(b1)) {}
+  Approach moved(const Eigen::Vector4d& q) const {
+    Approach m{(s + q[0] * a1 + q[1] * a2).normalized(), (t + q[2] * b1 + q[3] * b2).normalized(), 0};
+    m.distance = (sample_points(x, m.s.transpose()) - sample_points(y, m.t.transpose())).norm();
+    return m;
+  }
+  double half_square(const Eigen::Vector4d& q) const { return 0.5 * std::pow(moved(q).distance, 2); }
+};
+
+/// Newton with differences for slope and curvature; a step that does not come nearer is halved.
+Approach nearest_approach(const Coefficients& x, const Coefficients& y, Approach at) {
+  at = ApproachSlope(x, y, at).moved(Eigen::Vector4d::Zero());
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const ApproachSlope f(x, y, at);
+    constexpr double h = 1e-4;  // rounding 1e-16/h^2 and truncation h^2 both leave eight digits in the curvature
+    Eigen::Vector4d slope;
+    Eigen::Matrix4d curvature;
+    const double centre = f.half_square(Eigen::Vector4d::Zero());
+    for (int a = 0; a < 4; ++a) {
+      const Eigen::Vector4d e = h * Eigen::Vector4d::Unit(a);
+      const double plus = f.half_square(e), minus = f.half_square(-e);
+      slope[a] = (plus - minus) / (2 * h);
+      curvature(a, a) = (plus - 2 * centre + minus) / (h * h);
+      for (int b = 0; b < a; ++b) {
+        const Eigen::Vector4d d = h * Eigen::Vector4d::Unit(b);
+        curvature(a, b) = curvature(b, a) =
+            (f.half_square(e + d) - f.half_square(e - d) - f.half_square(d - e) + f.half_square(-e - d)) / (4 * h * h);
+      }
+    }
+    // Directions of negative or no curvature are walked down by their size.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(curvature);
+    const Eigen::Vector4d size = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-6 * eigen.eigenvalues().cwiseAbs().maxCoeff());
+    Eigen::Vector4d step = -eigen.eigenvectors() * (eigen.eigenvectors().transpose() * slope).cwiseQuotient(size);
+    if (step.norm() > 0.2) step *= 0.2 / step.norm();
+    bool nearer = false;
+    for (int half = 0; half < 20 && !nearer; ++half, step /= 2) {
+      const Approach trial = f.moved(step);
+      if (trial.distance < at.distance) {
+        nearer = at.distance - trial.distance > 1e-14 * at.distance;
+        at = trial;
+        if (!nearer) return at;
+      }
+    }
+    if (!nearer) break;
+  }
+  return at;
+}
+
+/// A surface with the source grid on which gaps are looked for.
+struct Surface {
+  const Coefficients& position;
+  const Basis& basis;
+  Sources sources;
+};
+
+Vec3 parameter_of(const Surface& s, Eigen::Index k) {
+  return unit_vector(s.basis.theta()[k % s.basis.latitudes()], s.basis.phi()[k / s.basis.latitudes()]);
+}
+
+/// The nearest pair of source points, where it is nearer than `best`.
+struct NearestSources {
+  double distance;
+  Eigen::Index first = 0, second = 0;
+};
+NearestSources nearest_sources(const Sources& a, const Sources& b) {
+  NearestSources nearest{std::numeric_limits<double>::infinity()};
+  for (Eigen::Index k = 0; k < a.points.rows(); ++k) {
+    const Vec3 x = a.points.row(k).transpose();
+    if (distance(b.box, x) >= nearest.distance) continue;
+    const auto [l, d] = nearest_source(b, x);
+    if (d < nearest.distance) nearest = {d, k, l};
+  }
+  return nearest;
+}
+
+/// Does one hold points of the other? Their boxes overlap.
+bool overlaps(const Sources& a, const Sources& b) {
+  if (winding(b, a.points.row(0).transpose()) > 0.5 || winding(a, b.points.row(0).transpose()) > 0.5) return true;
+  for (Eigen::Index k = 0; k < a.points.rows(); k += 7)
+    if (const Vec3 x = a.points.row(k).transpose(); distance(b.box, x) == 0 && winding(b, x) > 0.9) return true;
+  return false;
+}
+
+/// Of two surfaces: the nearest pair of source points, then Newton on the two spectral surfaces.
+Gap gap_between(const Surface& a, const Surface& b, int first, int second) {
+  const NearestSources nearest = nearest_sources(a.sources, b.sources);
+  Gap gap{nearest.distance, first, second, false};
+  const double spacing = b.sources.spacing[nearest.second];
+  if (nearest.distance < 3 * std::max(a.sources.spacing[nearest.first], spacing)) {
+    const Approach approach = nearest_approach(
+        a.position, b.position, {parameter_of(a, nearest.first), parameter_of(b, nearest.second), nearest.distance});
+    const Vec3 x = sample_points(a.position, approach.s.transpose()).row(0).transpose();
+    gap.distance = approach.distance;
+    // Where they cross, the least distance is zero up to rounding and has no side.
+    constexpr double touching = 1e-5;  // of the spacing: what the search for a zero distance leaves
+    gap.crossing = gap.distance < touching * spacing || nearest_point(b.position, x, approach.t).inside;
+  }
+  // Where boxes overlap one surface may hold the other, or they may cross by far.
+  if (!gap.crossing && distance(a.sources.box, b.sources.box) == 0) gap.crossing = overlaps(a.sources, b.sources);
+  if (gap.crossing) gap.distance = 0;
+  return gap;
+}
+
+}  // namespace
+
+Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
+  const int n = int(positions.size());
+  Gap best{std::numeric_limits<double>::infinity(), -1, -1, false};
+  if (n < 2) return best;
+  std::vector<std::optional<Surface>> surfaces(n);
+  parallel_for(n, [&](int i) {
+    const Basis& basis = plans.basis(positions[i].order, smooth_order(positions[i].order));
+    surfaces[i].emplace(Surface{positions[i], basis, make_sources(basis, positions[i])});
+  });
+  std::vector<Box> boxes;
+  Box all{surfaces[0]->sources.box};
+  double reach = 0;
+  for (const auto& surface : surfaces) {
+    boxes.push_back(surface->sources.box);
+    all = {all.low.cwiseMin(boxes.back().low), all.high.cwiseMax(boxes.back().high)};
+    reach = std::max(reach, surface->sources.spacing.maxCoeff());
+  }
+  // Pairs whose boxes are farther apart than the least gap found so far cannot have a smaller one.
+  const double farthest = (all.high - all.low).norm();
+  for (;; reach *= 4) {
+    const auto pairs = near_pairs(boxes, reach);
+    std::vector<Gap> gaps(pairs.size());
+    parallel_for(int(pairs.size()), [&](int k) {
+      const auto [i, j] = pairs[k];
+      gaps[k] = gap_between(*surfaces[j], *surfaces[i], i, j);
+    });
+    for (const Gap& gap : gaps)
+      if (gap.distance < best.distance) best = gap;
+    if (best.distance <= reach || reach > farthest) return best;
+  }
+}
+
+}  // namespace sim
