@@ -28,7 +28,7 @@ double step_length(const Dynamics& d, double target) {
 }
 
 /// Halves a failing step down to step / 2^step_retries, and lets it grow again after some calm ones.
-Attempt<Step> step_with_retries(const Setting& s, Dynamics& d, double target, const SimulationObserver& observer) {
+Attempt<Step> step_with_retries(const Model& s, Dynamics& d, double target, const SimulationObserver& observer) {
   constexpr std::int64_t calm_enough = 8;
   const double longest = longest_step(s.scene), shortest = std::ldexp(longest, -s.scene.numerics.step_retries);
   for (int retries = 0;; ++retries) {
@@ -125,7 +125,7 @@ class ResumeClock {
 SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options, const SimulationObserver& observer) {
   if (scene.numerics.threads > 0) omp_set_num_threads(scene.numerics.threads);
   Plans plans;
-  const Setting setting = make_setting(scene, plans);
+  const Model model = make_model(scene, plans);
 
   // The state to start from: the scene's, or the file's last resume point.
   Dynamics d;
@@ -136,13 +136,13 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
     if (observer.on_ready) observer.on_ready();
     if (options.another_time && d.time < scene.time.end) file->continue_as(options.scene_text, layout_for(scene, d));
   } else {
-    d = initial_dynamics(setting);
-    const TrajectoryHeader header{options.scene_text, options.program, options.build, scene_warnings(setting, d)};
+    d = initial_dynamics(model);
+    const TrajectoryHeader header{options.scene_text, options.program, options.build, scene_warnings(model, d)};
     if (observer.on_warning)
       for (const std::string& warning : header.warnings) observer.on_warning(warning);
     for (VesicleDynamics& v : d.vesicles) v.warned = v.tail > scene.numerics.tail_warning;
-    const State first = evaluate(setting, d).value();
-    expect(setting, d, first);
+    const State first = evaluate(model, d).value();
+    expect(model, d, first);
     const TrajectoryLayout layout = layout_for(scene, d);
     mark_saved(d, first);
     file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d), observer.on_ready));
@@ -158,7 +158,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
   SimulationObserver noting = observer;
   noting.on_warning = warn;
   const auto save = [&]() -> std::optional<Rejection> {
-    const Attempt<State> state = evaluate(setting, d);
+    const Attempt<State> state = evaluate(model, d);
     if (!state) return state.rejection();
     file->append(*state, records);
     records.clear();
@@ -180,7 +180,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
     }
     const bool every_step = !scene.time.save_every;
     const double due = save_time(scene, d), switched = next_switch(scene.flows, d.time), target = std::min(due, switched);
-    Attempt<Step> step = step_with_retries(setting, d, target, noting);
+    Attempt<Step> step = step_with_retries(model, d, target, noting);
     if (!step) {
       fail(step.rejection());
       break;
@@ -191,7 +191,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
     std::optional<Rejection> unsaved;
     if (every_step || d.time == due) unsaved = save();
     if (!unsaved && d.time == switched) {
-      Attempt<Dynamics> anew = begun_anew(setting, d);
+      Attempt<Dynamics> anew = begun_anew(model, d);
       if (anew) d = std::move(*anew);
       else unsaved = anew.rejection();
     }
@@ -202,7 +202,7 @@ SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options,
     for (std::size_t k = 0; k < d.vesicles.size(); ++k)  // one warning a vesicle and run: a shape may cross the bound often
       if (VesicleDynamics& v = d.vesicles[k]; !v.warned && v.tail > scene.numerics.tail_warning) {
         v.warned = true;
-        warn(fmt::format("t = {:.6g}: {}", d.time, resolution_warning(setting, d, k)));
+        warn(fmt::format("t = {:.6g}: {}", d.time, resolution_warning(model, d, k)));
       }
     if (clock.due()) {
       file->append_steps(records);
@@ -230,9 +230,9 @@ Dynamics resume_point(const TrajectoryReader& file, const std::filesystem::path&
 
 Preview preview(const Scene& scene) {
   Plans plans;
-  const Setting setting = make_setting(scene, plans);
-  const Dynamics d = initial_dynamics(setting);
-  return {evaluate(setting, d).value(), scene_warnings(setting, d)};
+  const Model model = make_model(scene, plans);
+  const Dynamics d = initial_dynamics(model);
+  return {evaluate(model, d).value(), scene_warnings(model, d)};
 }
 
 }  // namespace sim
