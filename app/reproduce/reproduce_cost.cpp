@@ -47,8 +47,8 @@ Report reproduce_cost(const Effort& effort) {
     for (const int p : orders) {
       sim::Scene scene = sheared_prolate(p, reference.contrast);
       scene.time.scheme = "bdf2";
-      const sim::Setting setting = sim::make_setting(scene, plans);
-      sim::Dynamics dynamics = sim::initial_dynamics(setting);
+      const sim::Model model = sim::make_model(scene, plans);
+      sim::Dynamics dynamics = sim::initial_dynamics(model);
       std::vector<double> sums(9, 0);
       int samples = 0;
       const int steps = static_cast<int>(std::lround(end / paper_step));
@@ -56,13 +56,13 @@ Report reproduce_cost(const Effort& effort) {
         stop_if_interrupted();
         effort.progress.show(static_cast<double>(k) / steps, fmt::format("λ = {}, p = {}", reference.contrast, p));
         const sim::Motion before = dynamics.vesicles[0].motion;
-        for (int part = 0; part < parts; ++part) dynamics = sim::take_step(setting, dynamics, paper_step / parts).value().dynamics;
+        for (int part = 0; part < parts; ++part) dynamics = sim::take_step(model, dynamics, paper_step / parts).value().dynamics;
         if (k % every == every - 1) {
           const sim::VesicleDynamics& v = dynamics.vesicles[0];
           const std::vector<sim::Coefficients> x{v.position};
           const std::vector<int> rates{v.upsampling};
           const std::vector<sim::Coefficients> tensions{v.motion.tension};
-          const sim::Suspension s = sim::freeze_suspension(plans, setting.materials, x, rates, {}, tensions);
+          const sim::Suspension s = sim::freeze_suspension(plans, model.materials, x, rates, {}, tensions);
           const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero());
           const sim::Motion zero{{p, sim::Matrix::Zero(sim::coefficient_count(p), 3)},
                                  {p, sim::Matrix::Zero(sim::coefficient_count(p), 1)}};
@@ -109,11 +109,11 @@ Report reproduce_cost(const Effort& effort) {
     sim::Scene scene = sheared_pair(p, 10);
     scene.vesicles[0].center = {-distance / 2, 0, 0};
     scene.vesicles[1].center = {distance / 2, 0, 0};
-    const sim::Setting setting = sim::make_setting(scene, plans);
-    const sim::Dynamics d = sim::initial_dynamics(setting);
+    const sim::Model model = sim::make_model(scene, plans);
+    const sim::Dynamics d = sim::initial_dynamics(model);
     const std::vector<sim::Coefficients> x{d.vesicles[0].position, d.vesicles[1].position};
     const std::vector<int> rates{d.vesicles[0].upsampling, d.vesicles[1].upsampling};
-    const sim::Suspension s = sim::freeze_suspension(plans, setting.materials, x, rates, {});
+    const sim::Suspension s = sim::freeze_suspension(plans, model.materials, x, rates, {});
     const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero());
     const std::vector<sim::Motion> zero{d.vesicles[0].motion, d.vesicles[1].motion};
     pair.rows.push_back({fmt::format("{}", distance),

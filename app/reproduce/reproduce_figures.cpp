@@ -120,12 +120,12 @@ Report reproduce_spectra(const Effort& effort) {
   vesicle.order = p;
   scene.vesicles = {vesicle};
   sim::Plans plans;
-  const sim::Setting setting = sim::make_setting(scene, plans);
-  sim::Dynamics dynamics = sim::initial_dynamics(setting);
+  const sim::Model model = sim::make_model(scene, plans);
+  sim::Dynamics dynamics = sim::initial_dynamics(model);
   while (dynamics.time < end * (1 - 1e-9)) {
     stop_if_interrupted();
     effort.progress.show(dynamics.time / end, "the shape");
-    dynamics = sim::take_step(setting, dynamics, 0.05).value().dynamics;
+    dynamics = sim::take_step(model, dynamics, 0.05).value().dynamics;
   }
   sim::Coefficients x = dynamics.vesicles[0].position;
   const sim::Coefficients fine = sim::resized(x, q), h = sim::mean_curvature(plans, fine, q);
