@@ -1,5 +1,6 @@
 #include "sim/surface/correction.h"
 #include "sim/surface/dealias.h"
+#include "sim/measures/diagnostics.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 

@@ -1,7 +1,8 @@
 // What must be exact: rigid motions, spheres, and units.
 #include "sim/membrane/flows.h"
-#include "sim/stepping/stepper.h"
+#include "sim/stepping/warnings.h"
 #include "sim/suspension/velocity.h"
+#include "sim/measures/diagnostics.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 
