@@ -5,7 +5,9 @@
 #include "app/pictures/flow_picture.h"
 #include "app/base/version.h"
 
-#include "render/overlay/annotation.h"
+#include "render/core/places.h"
+#include "render/overlay/panels.h"
+#include "render/scene/arrow_net.h"
 #include "render/scene/cutaway.h"
 #include "render/scene/section.h"
 #include "render/scene/sequence.h"
@@ -210,11 +212,6 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   return frame;
 }
 
-void paste(render::Image& into, const render::Image& part, int left, int top) {
-  for (int y = 0; y < part.height; ++y)
-    std::copy_n(part.at(0, y), static_cast<std::size_t>(part.width) * 3, into.at(left, top + y));
-}
-
 /// One range for all, so that equal colours mean equal values; about zero if that of one is, unless it was `given`.
 void share_legend(std::vector<Painting>& paintings, bool given) {
   for (Painting& p : paintings)
@@ -325,7 +322,7 @@ render::Image draw_picture(Studio& studio, const Production& production, double 
   for (std::size_t k = 0; k < panels.size(); ++k) {
     const auto column = static_cast<int>(k) % production.columns, row = static_cast<int>(k) / production.columns;
     const render::Image part = draw_panel(panels[k]);
-    paste(whole, part, column * part.width, row * part.height);
+    render::paste(whole, part, column * part.width, row * part.height);
   }
   const int width = panels.front().view.size[0], height = panels.front().view.size[1];
   render::draw_separators(whole, production.columns, production.rows, width, height);

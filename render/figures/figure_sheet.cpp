@@ -1,5 +1,5 @@
 // A sheet of pictures, (a) to (h), all at one scale.
-#include "render/scene/camera.h"
+#include "render/scene/framing.h"
 #include "render/figures/figure_kinds.h"
 
 #include <fmt/format.h>

@@ -2,6 +2,7 @@
 
 #include "render/overlay/annotation.h"
 #include "render/overlay/colour_bar.h"
+#include "render/core/places.h"
 #include "render/image/picture_canvas.h"
 
 #include <algorithm>
@@ -18,8 +19,8 @@ void draw_captions(Image& image, const Font& font, const Frame& frame) {
   const Captions& captions = frame.captions;
   const bool time = view.time_stamp && !captions.time.empty();
   const bool parameters = view.caption && !captions.parameters.empty();
-  const double unit = std::max(image.height, 0) / 1080.0;  // sizes below are px at 1080
-  const double margin = 44 * unit, large = std::max(29 * unit, 9.0), small = std::max(21 * unit, 7.5);
+  const OverlaySizes sizes = overlay_sizes(image.height);
+  const double unit = sizes.unit, margin = sizes.margin, large = sizes.large, small = sizes.small;
   if (time || parameters || !captions.note.empty()) {
     const double height = margin + 1.2 * large + 3.4 * small;
     draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(height))}, [&](cairo_t* cairo) {
