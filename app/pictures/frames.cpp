@@ -20,27 +20,6 @@ namespace app {
 
 namespace fs = std::filesystem;
 
-std::int64_t frame_count(double end, double time_per_frame) {
-  const double frames = std::floor(end / time_per_frame * (1 + 1e-12)) + 1;
-  if (!(frames <= most_frames + 1))
-    throw std::invalid_argument(fmt::format("{:.3g} frames are too many; movie.time_per_frame must be longer", frames));
-  return static_cast<std::int64_t>(frames);
-}
-
-std::vector<double> frame_times(const sim::TrajectoryReader& trajectory, const render::MovieParameters& movie) {
-  std::vector<double> times;
-  const std::int64_t states = trajectory.count();
-  if (movie.time_per_frame > 0) {
-    const double end = trajectory.time(states - 1);
-    const std::int64_t frames = frame_count(end, movie.time_per_frame);
-    for (std::int64_t f = 0; f < frames; ++f)
-      times.push_back(std::min(end, static_cast<double>(f) * movie.time_per_frame));
-  } else {
-    for (std::int64_t k = 0; k < states; ++k) times.push_back(trajectory.time(k));
-  }
-  return times;
-}
-
 namespace {
 
 constexpr const char* hash_key = "tanktread:hash";
@@ -142,12 +121,6 @@ struct Film {
 };
 
 }  // namespace
-
-void require_time(double time, double end) {
-  if (time >= 0 && time <= end * (1 + 1e-9)) return;
-  const auto [last, wanted] = sim::told_apart(end, time, 6);
-  throw std::invalid_argument(fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {}", last, wanted));
-}
 
 FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
   const Settings& settings = sources.front().settings;
