@@ -39,7 +39,8 @@ std::vector<Motion> motions_of(const FigureSource& source) {
     const sim::State state = source.trajectory.state(k);
     times.push_back(rate * state.time);
     for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
-      const double angle = sim::inclination(render::volume_moments(state.vesicles[v].position).second) * 180 / std::numbers::pi;
+      const double angle =
+          sim::inclination(render::volume_moments(state.vesicles[v].position).second) * 180 / std::numbers::pi;
       angles[v].push_back(angles[v].empty() ? angle : unwrapped(angle, angles[v].back()));
     }
   }
@@ -123,18 +124,21 @@ std::vector<render::Plot> steady_plots(const std::vector<FigureSource>& sources)
   std::vector<SteadyPoint> points;
   for (const FigureSource& source : sources) {
     const sim::Scene& scene = source.settings.scene;
-    if (time_unit(scene).symbol == "t")
-      throw std::runtime_error("a figure of tank-treading needs steady shear flows");
+    if (time_unit(scene).symbol == "t") throw std::runtime_error("a figure of tank-treading needs steady shear flows");
     const sim::State last = source.trajectory.state(source.trajectory.count() - 1);
     const std::vector<Motion> motions = motions_of(source);
     for (std::size_t v = 0; v < last.vesicles.size(); ++v) {
       const std::string who = fmt::format("'{}', vesicle {}:", source.file, v);
       if (motions[v] == Motion::tumbling || motions[v] == Motion::swinging)
-        throw std::runtime_error(fmt::format("{} it {}, and a figure of tank-treading shows steady angles only; 'figure inclination' "
-                                             "shows how it turns", who, text_of(motions[v])));
+        throw std::runtime_error(
+            fmt::format("{} it {}, and a figure of tank-treading shows steady angles only; 'figure inclination' "
+                        "shows how it turns",
+                        who, text_of(motions[v])));
       if (motions[v] == Motion::untold)
-        tell(fmt::format("{} too short a run to tell whether it tank-treads, swings or tumbles; marked as not settled", who));
-      points.push_back(steady_point(plans, last.vesicles[v], scene.vesicles[v].viscosity_contrast, time_unit(scene).factor));
+        tell(fmt::format("{} too short a run to tell whether it tank-treads, swings or tumbles; marked as not settled",
+                         who));
+      points.push_back(
+          steady_point(plans, last.vesicles[v], scene.vesicles[v].viscosity_contrast, time_unit(scene).factor));
       points.back().motion = motions[v];
     }
   }

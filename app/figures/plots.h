@@ -11,8 +11,8 @@ std::vector<render::Plot> phase_plots(const std::vector<FigureSource>&, const re
 /// Spectra of position and curvature, a curve for each of input.states.
 std::vector<render::Plot> spectra_plots(const render::FigureInput& input);
 
-/// Angles and frequencies of tank-treading at the end of each trajectory. Throws std::runtime_error where the flow is no
-/// steady shear, or a vesicle swings or tumbles; tells of runs that are too short.
+/// Angles and frequencies of tank-treading at the end of each trajectory. Throws std::runtime_error where the flow is
+/// no steady shear, or a vesicle swings or tumbles; tells of runs that are too short.
 std::vector<render::Plot> steady_plots(const std::vector<FigureSource>&);
 
 }  // namespace app

@@ -17,7 +17,7 @@ namespace {
 
 /// What the quantities of one trajectory are computed from; left empty where no quantity needs it.
 struct Measurements {
-  double length = 1;  ///< area radius
+  double length = 1;                                ///< area radius
   std::vector<double> times;                        ///< of the saved states
   std::vector<std::vector<VesicleSample>> samples;  ///< state, vesicle
   std::vector<sim::StepRecord> steps;
@@ -104,14 +104,15 @@ void put_values(const StepCurve& curve, const Measurements& m, std::size_t vesic
 }
 
 /// How curve `c` of vesicle `v` looks, of `curves` and `vesicles` in all.
-render::Series empty_series(const FigureSource& source, const char* curve, std::size_t c, std::size_t curves, int v, int vesicles) {
+render::Series empty_series(const FigureSource& source, const char* curve, std::size_t c, std::size_t curves, int v,
+                            int vesicles) {
   std::string name = curves > 1 ? curve : "";
   const auto add = [&](const std::string& word) { name += (name.empty() ? "" : ", ") + word; };
   if (vesicles > 1) add(fmt::format("vesicle {}", v));
   if (!source.name.empty()) add(source.name);
   render::Series series;
   series.name = name;
-  series.dashed = v % 2 == 1;  // where two agree, both are seen
+  series.dashed = v % 2 == 1;                               // where two agree, both are seen
   if (vesicles > 1 && curves > 1 && source.name.empty()) {  // colours tell the curves, dashes the vesicles
     series.colour = c;
     series.legend = v == 0 ? curve : "";

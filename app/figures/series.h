@@ -17,7 +17,7 @@ namespace app {
 struct FigureSource {
   const sim::TrajectoryReader& trajectory;
   const Settings& settings;
-  std::string name;  ///< in the legend when there are several sources; else empty
+  std::string name;       ///< in the legend when there are several sources; else empty
   std::string file = {};  ///< of the trajectory, for messages
 };
 
@@ -31,8 +31,8 @@ struct SharedScales {
 };
 SharedScales shared_scales(const std::vector<FigureSource>&);
 
-/// Series of one trajectory for each of the quantities, one after the other: one for each vesicle and curve; of the first
-/// vesicle and curve only, without names, when `single`. States are measured once for all.
+/// Series of one trajectory for each of the quantities, one after the other: one for each vesicle and curve; of the
+/// first vesicle and curve only, without names, when `single`. States are measured once for all.
 std::vector<render::Series> series_of(const FigureSource&, const SharedScales&, const std::vector<const QuantityRow*>&,
                                       bool single);
 

@@ -41,8 +41,9 @@ FlowRequest request_of(sim::Plans& plans, const ViewPanel& p, const sim::State& 
 }
 
 /// The parts of a line that are clear of the captions; heads: indices of its points.
-void add_clear_parts(const render::Streamline& line, const std::vector<Eigen::Index>& heads, const render::CutPlane& plane,
-                     const render::Camera& camera, std::vector<render::FlowLines::Line>& parts) {
+void add_clear_parts(const render::Streamline& line, const std::vector<Eigen::Index>& heads,
+                     const render::CutPlane& plane, const render::Camera& camera,
+                     std::vector<render::FlowLines::Line>& parts) {
   render::FlowLines::Line part;
   const auto finish = [&] {
     if (part.points.size() > 1) parts.push_back(part);
@@ -74,7 +75,8 @@ render::FlowArrows arrows_of(const ViewPanel& p, const render::StateSummary& sum
   return arrows;
 }
 
-render::FlowLines flow_lines_of(sim::Plans& plans, const ViewPanel& p, const sim::State& state, const render::Camera& camera) {
+render::FlowLines flow_lines_of(sim::Plans& plans, const ViewPanel& p, const sim::State& state,
+                                const render::Camera& camera) {
   render::FlowLines all;
   if (p.view.streamlines == "off") return all;
   const FlowRequest request = request_of(plans, p, state, camera);
@@ -85,7 +87,7 @@ render::FlowLines flow_lines_of(sim::Plans& plans, const ViewPanel& p, const sim
 }
 
 render::FlowProfile profile_of(const ViewPanel& p, const render::Camera& camera, double time) {
-  constexpr int count = 25;  // points: an arrow stands at every fourth
+  constexpr int count = 25;                                       // points: an arrow stands at every fourth
   const glm::dmat3 turn(glm::transpose(glm::mat3(camera.view)));  // columns: right, up, back
   sim::Matrix points(count, 3);
   std::vector<double> heights;
@@ -96,7 +98,8 @@ render::FlowProfile profile_of(const ViewPanel& p, const render::Camera& camera,
   const sim::Matrix velocity = sim::background_velocity(p.source.settings.scene.flows, time, points);
   render::FlowProfile profile;
   for (int k = 0; k < count; ++k)
-    profile.points.emplace_back(heights[static_cast<std::size_t>(k)], glm::dot(render::to_glm(velocity.row(k)), turn[0]));
+    profile.points.emplace_back(heights[static_cast<std::size_t>(k)],
+                                glm::dot(render::to_glm(velocity.row(k)), turn[0]));
   return profile;
 }
 

@@ -15,8 +15,10 @@ sim::State state_at(const sim::TrajectoryReader& trajectory, double time) {
   std::int64_t low = 0, high = trajectory.count() - 1;
   while (low < high) {  // first state at or after `time`
     const std::int64_t middle = (low + high) / 2;
-    if (trajectory.time(middle) < time) low = middle + 1;
-    else high = middle;
+    if (trajectory.time(middle) < time)
+      low = middle + 1;
+    else
+      high = middle;
   }
   sim::State after = trajectory.state(low);
   if (low == 0 || time >= after.time) return after;
@@ -26,7 +28,8 @@ sim::State state_at(const sim::TrajectoryReader& trajectory, double time) {
 std::vector<std::int64_t> instants_to_look_at(const sim::TrajectoryReader& trajectory) {
   const std::int64_t states = trajectory.count(), stride = std::max<std::int64_t>(1, states / 400);
   std::vector<std::int64_t> chosen;
-  for (std::int64_t k = 0; k < states; k = k + 1 < states ? std::min(k + stride, states - 1) : states) chosen.push_back(k);
+  for (std::int64_t k = 0; k < states; k = k + 1 < states ? std::min(k + stride, states - 1) : states)
+    chosen.push_back(k);
   return chosen;
 }
 
@@ -60,7 +63,8 @@ double time_of_frame(const sim::TrajectoryReader& trajectory, const render::Movi
 void require_time(double time, double end) {
   if (time >= 0 && time <= end * (1 + 1e-9)) return;
   const auto [last, wanted] = sim::told_apart(end, time, 6);
-  throw std::invalid_argument(fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {}", last, wanted));
+  throw std::invalid_argument(
+      fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {}", last, wanted));
 }
 
 }  // namespace app

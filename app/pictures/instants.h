@@ -1,4 +1,5 @@
-// Instants of a trajectory: states between the saved ones, times of frames, and the states that a movie is planned from.
+// Instants of a trajectory: states between the saved ones, times of frames, and the states that a movie is planned
+// from.
 #pragma once
 
 #include "app/scene/settings.h"

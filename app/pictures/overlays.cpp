@@ -43,7 +43,8 @@ void frame_inset(ViewPanel& p, const std::vector<render::StateSummary>& summarie
   p.inset_half = room * (high - low) / 2.0;
 }
 
-render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render::Camera& camera, const glm::dvec3& centre) {
+render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render::Camera& camera,
+                       const glm::dvec3& centre) {
   render::Inset inset;
   render::CutPlane plane;
   plane.origin = sim::Vec3(0, camera.target.y, 0);
@@ -54,7 +55,8 @@ render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render
     for (const render::ClosedCurve& curve : render::cut(state.vesicles[v].position, plane)) {
       render::Inset::Curve& drawn = inset.curves.emplace_back();
       drawn.colour = p.painting.bodies[v];
-      for (Eigen::Index k = 0; k < curve.points.rows(); ++k) drawn.points.emplace_back(curve.points(k, 0), curve.points(k, 1));
+      for (Eigen::Index k = 0; k < curve.points.rows(); ++k)
+        drawn.points.emplace_back(curve.points(k, 0), curve.points(k, 1));
     }
   return inset;
 }

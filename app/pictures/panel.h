@@ -19,14 +19,14 @@ struct ViewPanel {
   PictureSource source;
   render::ViewParameters view;  ///< with the panel's own size and camera
   render::Framing framing = {};
-  double arrow_speed = 0;       ///< of the longest arrow, in the scene's units; 0: there are none
-  glm::dvec2 inset_centre{0};   ///< (x, z) of the inset; relative to what a following camera follows
-  glm::dvec2 inset_half{1};     ///< half of the extent it must contain
+  double arrow_speed = 0;          ///< of the longest arrow, in the scene's units; 0: there are none
+  glm::dvec2 inset_centre{0};      ///< (x, z) of the inset; relative to what a following camera follows
+  glm::dvec2 inset_half{1};        ///< half of the extent it must contain
   render::Captions captions = {};  ///< without the time
   Painting painting = {};
-  bool stamped = true;          ///< shows the time and notes
-  std::vector<double> laid = {};   ///< times at which labels were reset on any vesicle
-  double notice = 0;            ///< how long before and after a reset a note is shown, in scene time
+  bool stamped = true;            ///< shows the time and notes
+  std::vector<double> laid = {};  ///< times at which labels were reset on any vesicle
+  double notice = 0;              ///< how long before and after a reset a note is shown, in scene time
   TimeFormat time_format = {};
 };
 

@@ -56,7 +56,8 @@ SourceMeasures measures_of(const PictureSource& source, bool titled, std::option
 
 std::string hash_of(const std::vector<PictureSource>& sources, bool still) {
   std::string hash;
-  for (const auto& [trajectory, settings] : sources) hash += fmt::format("{}-{}-", picture_hash(settings), trajectory.count());
+  for (const auto& [trajectory, settings] : sources)
+    hash += fmt::format("{}-{}-", picture_hash(settings), trajectory.count());
   return hash + version() + (still ? "-still" : "");
 }
 

@@ -33,12 +33,15 @@ struct Span {
   double end;
   int every;  ///< steps of the paper between two shapes
 };
-Span span_of(const Effort& effort) { return effort.quick ? Span{.end = 0.42, .every = 1} : Span{.end = 5.04, .every = 4}; }
+Span span_of(const Effort& effort) {
+  return effort.quick ? Span{.end = 0.42, .every = 1} : Span{.end = 5.04, .every = 4};
+}
 
 /// Iterations of GMRES: sums over the shapes, then their averages.
 struct Iterations {
-  std::array<double, tolerances.size()> from_zero{}, from_last{};  ///< to each tolerance; from_last: from the motion before
-  double block = 0;                                                ///< to 1e-8 from zero, with the block self solve
+  std::array<double, tolerances.size()> from_zero{},
+      from_last{};   ///< to each tolerance; from_last: from the motion before
+  double block = 0;  ///< to 1e-8 from zero, with the block self solve
 };
 
 sim::Motion at_rest(int order) {
@@ -80,7 +83,8 @@ Iterations average_iterations(sim::Plans& plans, int p, double contrast, const E
     stop_if_interrupted();
     effort.progress.show(static_cast<double>(k) / steps, fmt::format("λ = {}, p = {}", contrast, p));
     const sim::Motion before = dynamics.vesicles[0].motion;
-    for (int part = 0; part < parts; ++part) dynamics = sim::take_step(setting, dynamics, paper_step / parts).value().dynamics;
+    for (int part = 0; part < parts; ++part)
+      dynamics = sim::take_step(setting, dynamics, paper_step / parts).value().dynamics;
     if (k % span.every != span.every - 1) continue;
     add_iterations(all, plans, setting, scene, dynamics.vesicles[0], before);
     ++samples;
@@ -94,16 +98,18 @@ Iterations average_iterations(sim::Plans& plans, int p, double contrast, const E
 /// The paper's number for an order; "-" for an order that it does not have.
 std::string paper_cell(const std::array<int, 5>& numbers, int order) {
   const auto found = std::find(paper_orders.begin(), paper_orders.end(), order);
-  return found == paper_orders.end() ? "-" : std::to_string(numbers[static_cast<std::size_t>(found - paper_orders.begin())]);
+  return found == paper_orders.end() ? "-"
+                                     : std::to_string(numbers[static_cast<std::size_t>(found - paper_orders.begin())]);
 }
 
 /// Two vesicles: the block self solve when they are far apart, and near.
 TextTable pair_table(sim::Plans& plans, const Effort& effort) {
   using sim::Preconditioner;
   const int p = effort.quick ? 6 : 8;
-  TextTable table{.caption = fmt::format("Two vesicles side by side along x, λ = 10, p = {}: iterations to 1e-8 from zero.", p),
-                  .columns = {"distance of the centres", "spectral", "block self solve"},
-                  .rows = {}};
+  TextTable table{
+      .caption = fmt::format("Two vesicles side by side along x, λ = 10, p = {}: iterations to 1e-8 from zero.", p),
+      .columns = {"distance of the centres", "spectral", "block self solve"},
+      .rows = {}};
   for (const double distance : {100.0, 10.0, 5.0, 3.5}) {
     stop_if_interrupted();
     sim::Scene scene = sheared_pair(p, 10);
@@ -127,9 +133,11 @@ TextTable pair_table(sim::Plans& plans, const Effort& effort) {
 std::vector<std::string> setting_text(const Effort& effort) {
   const Span span = span_of(effort);
   return {prolate_setting,
-          fmt::format("The system of bdf2 at γ̇Δt = 0.21 (c = 0.14), with operators at shapes {} time units apart on the way "
-                      "to T = {}/γ̇; averages. The shapes come from bdf2 with γ̇Δt = 0.0525 and area and volume correction: "
-                      "none of them is spoilt by a step that is too long.", span.every * paper_step, span.end),
+          fmt::format(
+              "The system of bdf2 at γ̇Δt = 0.21 (c = 0.14), with operators at shapes {} time units apart on the way "
+              "to T = {}/γ̇; averages. The shapes come from bdf2 with γ̇Δt = 0.0525 and area and volume correction: "
+              "none of them is spoilt by a step that is too long.",
+              span.every * paper_step, span.end),
           "Iterations of GMRES to the relative residual in the column's head, from zero or from the velocity and "
           "tension 0.21 earlier; corrected spectral preconditioner. The paper does not state its tolerance.",
           "Singular integrals per unit time, counted as the paper seems to: iterations / γ̇Δt. Here S and D are "
@@ -148,7 +156,8 @@ std::vector<std::string> iteration_columns() {
 
 Report reproduce_cost(const Effort& effort) {
   TextTable table{.caption = "GMRES iterations per step.", .columns = iteration_columns(), .rows = {}};
-  TextTable cost{.caption = "Singular integrals per unit time.", .columns = {"λ", "p", "1e-4", "1e-8", "paper"}, .rows = {}};
+  TextTable cost{
+      .caption = "Singular integrals per unit time.", .columns = {"λ", "p", "1e-4", "1e-8", "paper"}, .rows = {}};
   sim::Plans plans;
   double most = 0, widest = 0, most_block = 0;
   for (const PaperRow& row : paper) {
@@ -175,9 +184,10 @@ Report reproduce_cost(const Effort& effort) {
   report.title = "Table 5: iterations and singular integrals";
   report.setting = setting_text(effort);
   report.tables = {table, cost, pair_table(plans, effort)};
-  report.findings.push_back(fmt::format("At 1e-8 from zero: at most {:.1f} iterations (required: 30); for one λ they vary over p "
-                                        "by at most {:.0f} % (required: less than a third). With the block self solve at most {:.1f}.",
-                                        most, 100 * widest, most_block));
+  report.findings.push_back(
+      fmt::format("At 1e-8 from zero: at most {:.1f} iterations (required: 30); for one λ they vary over p "
+                  "by at most {:.0f} % (required: less than a third). With the block self solve at most {:.1f}.",
+                  most, 100 * widest, most_block));
   return report;
 }
 

@@ -29,7 +29,8 @@ const std::vector<QuantityRow>& quantities() {
        .meaning = "its rate of change in units of the flow's rate",
        .axis = "(dθ/dt) / γ̇",
        .scale = Scale::linear,
-       .curves = StateCurves{{"dθ/dt", [](const Sample& m, const Units&) { return m.inclination_deg * std::numbers::pi / 180; }}},
+       .curves = StateCurves{{"dθ/dt", [](const Sample& m,
+                                          const Units&) { return m.inclination_deg * std::numbers::pi / 180; }}},
        .differentiate = true,
        .scaling = Scaling::rate,
        .bare_axis = "dθ/dt"},
@@ -82,13 +83,15 @@ const std::vector<QuantityRow>& quantities() {
        .meaning = "mean, least and largest",
        .axis = "σR_{0}^{2}/κ_{b}",
        .scale = Scale::linear,
-       .curves = StateCurves{{"mean", [](const Sample& m, const Units& u) { return m.tension_mean / tension_unit(u); }},
-                             {"least", [](const Sample& m, const Units& u) { return m.tension_min / tension_unit(u); }},
-                             {"largest", [](const Sample& m, const Units& u) { return m.tension_max / tension_unit(u); }}},
+       .curves =
+           StateCurves{{"mean", [](const Sample& m, const Units& u) { return m.tension_mean / tension_unit(u); }},
+                       {"least", [](const Sample& m, const Units& u) { return m.tension_min / tension_unit(u); }},
+                       {"largest", [](const Sample& m, const Units& u) { return m.tension_max / tension_unit(u); }}},
        .scaling = Scaling::bending,
        .bare_axis = "σ"},
       {.name = "normal-velocity",
-       .meaning = "root of its mean square over the membrane, relative to the centre: 0 when the shape neither changes nor turns",
+       .meaning = "root of its mean square over the membrane, relative to the centre: 0 when the shape neither changes "
+                  "nor turns",
        .axis = "⟨(u·n)^{2}⟩^{1/2} / γ̇R_{0}",
        .scale = Scale::linear,
        .curves = StateCurves{{"u·n",
@@ -113,7 +116,8 @@ const std::vector<QuantityRow>& quantities() {
        .meaning = "length of the time steps",
        .axis = "γ̇Δt",
        .scale = Scale::linear,
-       .curves = StepCurves{{"γ̇Δt", [](const Step& r, std::size_t, const Units& u) { return u.rate > 0 ? u.rate * r.dt : r.dt; }}},
+       .curves = StepCurves{{"γ̇Δt", [](const Step& r, std::size_t,
+                                       const Units& u) { return u.rate > 0 ? u.rate * r.dt : r.dt; }}},
        .per_vesicle = false,
        .scaling = Scaling::rate,
        .bare_axis = "Δt"},
@@ -127,19 +131,25 @@ const std::vector<QuantityRow>& quantities() {
        .meaning = "grid factor of differentiation",
        .axis = "upsampling",
        .scale = Scale::linear,
-       .curves = StepCurves{{"upsampling", [](const Step& r, std::size_t v, const Units&) { return r.vesicles.at(v).upsampling; }}}},
+       .curves = StepCurves{{"upsampling",
+                             [](const Step& r, std::size_t v, const Units&) { return r.vesicles.at(v).upsampling; }}}},
       {.name = "tail",
        .meaning = "share of the mean curvature's spectrum in its last quarter",
        .axis = "spectrum tail",
        .scale = Scale::linear,
-       .curves = StepCurves{{"tail", [](const Step& r, std::size_t v, const Units&) { return r.vesicles.at(v).tail; }}}},
+       .curves =
+           StepCurves{{"tail", [](const Step& r, std::size_t v, const Units&) { return r.vesicles.at(v).tail; }}}},
   };
   return rows;
 }
 
 std::vector<const char*> curve_names(const QuantityRow& row) {
   std::vector<const char*> names;
-  std::visit([&](const auto& curves) { for (const auto& curve : curves) names.push_back(curve.name); }, row.curves);
+  std::visit(
+      [&](const auto& curves) {
+        for (const auto& curve : curves) names.push_back(curve.name);
+      },
+      row.curves);
   return names;
 }
 

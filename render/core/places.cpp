@@ -18,7 +18,8 @@ struct CoveredArea {
 
 CoveredArea area_of(Overlay overlay) {
   switch (overlay) {
-    case Overlay::colour_bar: return {.edge = Edge::right, .reach = 0.42, .share_of_width = 0, .low = -0.52, .high = 0.68};
+    case Overlay::colour_bar:
+      return {.edge = Edge::right, .reach = 0.42, .share_of_width = 0, .low = -0.52, .high = 0.68};
     case Overlay::triad: return {.edge = Edge::right, .reach = 0.45, .share_of_width = 0, .low = -1, .high = -0.62};
     case Overlay::inset: return {.edge = Edge::right, .reach = 0.72, .share_of_width = 0, .low = 0.48, .high = 1};
     case Overlay::profile: return {.edge = Edge::left, .reach = 0, .share_of_width = 0.25, .low = -0.72, .high = 0.78};

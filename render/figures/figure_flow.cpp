@@ -15,7 +15,8 @@ namespace {
 
 // Pale to deep blue-green: light enough under black lines, monotone in grey.
 Colour colour_of_speed(double t) {
-  constexpr std::array<Colour, 5> stops{{{0.985, 0.985, 0.965}, {0.85, 0.93, 0.87}, {0.62, 0.83, 0.82}, {0.38, 0.68, 0.77}, {0.22, 0.50, 0.69}}};
+  constexpr std::array<Colour, 5> stops{
+      {{0.985, 0.985, 0.965}, {0.85, 0.93, 0.87}, {0.62, 0.83, 0.82}, {0.38, 0.68, 0.77}, {0.22, 0.50, 0.69}}};
   return between(stops, t);
 }
 
@@ -43,7 +44,8 @@ double round_up(double v) {
   return 10 * power;
 }
 
-void draw_streamline(const Pen& pen, const Panel& panel, const Streamline& line, double length, double width, const Colour& colour) {
+void draw_streamline(const Pen& pen, const Panel& panel, const Streamline& line, double length, double width,
+                     const Colour& colour) {
   cairo_t* cairo = pen.cairo;
   cairo_new_path(cairo);
   for (Eigen::Index i = 0; i < line.points.rows(); ++i)
@@ -57,10 +59,12 @@ void draw_streamline(const Pen& pen, const Panel& panel, const Streamline& line,
 }
 
 // A slender head whose tip leads the flow.
-void draw_head(const Pen& pen, const Eigen::Vector2d& at, const Eigen::Vector2d& along, double size, const Colour& colour) {
+void draw_head(const Pen& pen, const Eigen::Vector2d& at, const Eigen::Vector2d& along, double size,
+               const Colour& colour) {
   const Eigen::Vector2d u = along.normalized(), n(-u.y(), u.x());
-  const std::array<Eigen::Vector2d, 4> corners{Eigen::Vector2d(at + 0.62 * size * u), Eigen::Vector2d(at - 0.38 * size * u + 0.36 * size * n),
-                                               Eigen::Vector2d(at - 0.20 * size * u), Eigen::Vector2d(at - 0.38 * size * u - 0.36 * size * n)};
+  const std::array<Eigen::Vector2d, 4> corners{
+      Eigen::Vector2d(at + 0.62 * size * u), Eigen::Vector2d(at - 0.38 * size * u + 0.36 * size * n),
+      Eigen::Vector2d(at - 0.20 * size * u), Eigen::Vector2d(at - 0.38 * size * u - 0.36 * size * n)};
   cairo_new_path(pen.cairo);
   for (const Eigen::Vector2d& c : corners) cairo_line_to(pen.cairo, c.x(), c.y());
   cairo_close_path(pen.cairo);
@@ -86,8 +90,9 @@ std::string csv_of(const FlowPicture& flow, double length) {
   csv += fmt::format("line,closed,{},{},speed\n", right, up);
   for (std::size_t k = 0; k < flow.lines.size(); ++k)
     for (Eigen::Index i = 0; i < flow.lines[k].points.rows(); ++i)
-      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g}\n", k, flow.lines[k].closed ? 1 : 0, flow.lines[k].points(i, 0) / length,
-                         flow.lines[k].points(i, 1) / length, flow.speed_factor * flow.lines[k].speed[i]);
+      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g}\n", k, flow.lines[k].closed ? 1 : 0,
+                         flow.lines[k].points(i, 0) / length, flow.lines[k].points(i, 1) / length,
+                         flow.speed_factor * flow.lines[k].speed[i]);
   return csv;
 }
 
@@ -213,10 +218,12 @@ void draw_speed_bar(const Pen& pen, const FlowDrawing& d) {
     cairo_move_to(cairo, bar.left + bar.width, y);
     cairo_rel_line_to(cairo, -0.3 * bar.width, 0);
     cairo_stroke(cairo);
-    draw_text(cairo, pen.font, theme.text, bar.left + bar.width + 0.4 * theme.text, y + 0.36 * theme.text, ticks.texts[k]);
+    draw_text(cairo, pen.font, theme.text, bar.left + bar.width + 0.4 * theme.text, y + 0.36 * theme.text,
+              ticks.texts[k]);
   }
   cairo_save(cairo);
-  cairo_translate(cairo, bar.left + bar.width + 0.5 * theme.text + ticks.widest + 1.3 * theme.label, bar.top + bar.height / 2);
+  cairo_translate(cairo, bar.left + bar.width + 0.5 * theme.text + ticks.widest + 1.3 * theme.label,
+                  bar.top + bar.height / 2);
   cairo_rotate(cairo, -std::numbers::pi / 2);
   draw_text(cairo, pen.font, theme.label, 0, 0, d.speed_label, Align::centre);
   cairo_restore(cairo);
@@ -229,7 +236,8 @@ void draw(const Pen& pen, const FlowDrawing& d) {
   draw_axes(pen, panel, d.axes);
   draw_title(pen, panel, d.title);
   set_colour(pen, pen.theme.soft);
-  draw_text(pen.cairo, pen.font, pen.theme.text, panel.left + panel.width, panel.top - 0.55 * pen.theme.label, d.frame, Align::right);
+  draw_text(pen.cairo, pen.font, pen.theme.text, panel.left + panel.width, panel.top - 0.55 * pen.theme.label, d.frame,
+            Align::right);
   if (d.image) draw_speed_bar(pen, d);
 }
 
@@ -264,7 +272,10 @@ Figure draw_streamlines(const FigureInput& input) {
   figure.csv = csv_of(flow, input.length);
   figure.drawing = {.width = d.layout.width,
                     .height = d.layout.height,
-                    .paint = [d](cairo_t* cairo, const Font& font) { draw({cairo, font, d.theme}, d); },
+                    .paint =
+                        [d](cairo_t* cairo, const Font& font) {
+                          draw({cairo, font, d.theme}, d);
+                        },
                     .ground = page.theme.ground,
                     .dots_per_inch = dots_per_inch(input.parameters)};
   return figure;

@@ -28,7 +28,8 @@ Range range_of_axis(const std::vector<double>& values, Scale scale, bool absciss
   for (const double v : values)
     if (std::isfinite(v)) size = std::max(size, std::abs(v));
   if (abscissa) return range_of(values, 0);
-  return range_of(values, 0.07, std::max(1e-4 * size, 1e-14));  // rounding errors are not blown up to the height of a panel
+  return range_of(values, 0.07,
+                  std::max(1e-4 * size, 1e-14));  // rounding errors are not blown up to the height of a panel
 }
 
 Colour colour_of(const Theme& theme, const Curve& curve) {
@@ -117,7 +118,9 @@ Grid grid_of(const FigureParameters& parameters, const Page& page, std::size_t c
   return {.columns = columns,
           .rows = (count + columns - 1) / columns,
           .stacked = stacked,
-          .width = page.width > 0 ? page.width : page.height > 0 ? full : share * full,
+          .width = page.width > 0    ? page.width
+                   : page.height > 0 ? full
+                                     : share * full,
           .height = page.height};
 }
 
@@ -146,7 +149,8 @@ void share_time(std::vector<Placed>& placed) {
     for (const Curve& curve : p.plot.curves) all.push_back(curve.name);
     return all;
   };
-  const bool same = std::all_of(placed.begin(), placed.end(), [&](const Placed& p) { return names(p) == names(placed.front()); });
+  const bool same =
+      std::all_of(placed.begin(), placed.end(), [&](const Placed& p) { return names(p) == names(placed.front()); });
   for (std::size_t k = 1; same && k < placed.size(); ++k)
     for (Curve& curve : placed[k].plot.curves) curve.name.clear();
   Range span = placed.front().panel.x;
@@ -154,12 +158,13 @@ void share_time(std::vector<Placed>& placed) {
   for (Placed& p : placed) p.panel.x = span;
 }
 
-/// The largest margins of each column and row of panels whose sizes are known; `title`: height above each. Labels of y are
-/// aligned within a column.
+/// The largest margins of each column and row of panels whose sizes are known; `title`: height above each. Labels of y
+/// are aligned within a column.
 struct GridMargins {
   std::vector<Margins> column, row;
 };
-GridMargins grid_margins(std::vector<Placed>& placed, const Grid& grid, const Ruler& ruler, const Theme& theme, double title) {
+GridMargins grid_margins(std::vector<Placed>& placed, const Grid& grid, const Ruler& ruler, const Theme& theme,
+                         double title) {
   std::vector<double> label_room(grid.columns, 0);
   for (std::size_t k = 0; k < placed.size(); ++k) {
     const Panel& panel = placed[k].panel;
@@ -182,15 +187,16 @@ GridMargins grid_margins(std::vector<Placed>& placed, const Grid& grid, const Ru
 
 /// Gives the panels sizes and places; returns the height of the page, pt.
 double place_panels(std::vector<Placed>& placed, const Grid& grid, const GridMargins& margins, const Theme& theme) {
-  const double between = (grid.stacked ? 1.5 : 1.0) * theme.text;    // columns
+  const double between = (grid.stacked ? 1.5 : 1.0) * theme.text;  // columns
   const double between_rows = grid.stacked ? 0.3 * theme.text : 0;
   double across = between * static_cast<double>(grid.columns - 1), down = 0;
   for (const Margins& c : margins.column) across += c.left + c.right;
   for (const Margins& r : margins.row) down += r.top + r.bottom;
   if (grid.stacked) down += between_rows * static_cast<double>(grid.rows - 1);
   const double width = std::max((grid.width - across) / static_cast<double>(grid.columns), 4 * theme.text);
-  const double height = grid.height > 0 ? std::max((grid.height - down) / static_cast<double>(grid.rows), 3 * theme.text)
-                                        : grid.aspect() * width;
+  const double height = grid.height > 0
+                            ? std::max((grid.height - down) / static_cast<double>(grid.rows), 3 * theme.text)
+                            : grid.aspect() * width;
   std::vector<double> lefts, tops;
   double x = 0, y = 0;
   for (const Margins& c : margins.column) {
@@ -234,10 +240,11 @@ Figure arranged(const FigureInput& input, std::vector<Plot> plots, bool stacked,
   figure.csv = std::move(csv);
   figure.drawing = {.width = grid.width,
                     .height = total,
-                    .paint = [placed, theme](cairo_t* cairo, const Font& font) {
-                      const Pen pen{cairo, font, theme};
-                      for (const Placed& p : placed) draw(pen, p);
-                    },
+                    .paint =
+                        [placed, theme](cairo_t* cairo, const Font& font) {
+                          const Pen pen{cairo, font, theme};
+                          for (const Placed& p : placed) draw(pen, p);
+                        },
                     .ground = theme.ground,
                     .dots_per_inch = dots_per_inch(input.parameters)};
   return figure;

@@ -1,9 +1,9 @@
 #include "render/overlay/overlay.h"
 
-#include "render/overlay/annotation.h"
-#include "render/overlay/colour_bar.h"
 #include "render/core/places.h"
 #include "render/image/picture_canvas.h"
+#include "render/overlay/annotation.h"
+#include "render/overlay/colour_bar.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +69,8 @@ void draw_title(Image& image, const Font& font, const Frame& frame) {
 void draw_panel_name(Image& image, const Font& font, const std::string& name) {
   if (name.empty()) return;
   const OverlaySizes s = overlay_sizes(image.height);
-  const int top = static_cast<int>(image.height - s.margin - 2 * s.small), height = static_cast<int>(s.margin + 2 * s.small);
+  const int top = static_cast<int>(image.height - s.margin - 2 * s.small),
+            height = static_cast<int>(s.margin + 2 * s.small);
   draw_on(image, {0, top, image.width, height}, [&](cairo_t* cairo) {
     set_colour(cairo, soft_ink);
     draw_text_on_picture(cairo, font, s.small, image.width / 2.0, image.height - s.margin, name, Align::centre);
@@ -83,13 +84,14 @@ void draw_scale_bar(Image& image, const Font& font, const Captions& captions, co
   const double length = captions.scale_length / camera.half_width * image.width / 2;
   const double thickness = std::max(4 * s.unit, 1.5), baseline = image.height - s.margin;
   if (!(length > 2 * thickness && length < 0.6 * image.width)) return;
-  const int top = static_cast<int>(baseline - 2.2 * s.small), height = static_cast<int>(std::ceil(2.2 * s.small + s.margin));
+  const int top = static_cast<int>(baseline - 2.2 * s.small),
+            height = static_cast<int>(std::ceil(2.2 * s.small + s.margin));
   draw_on(image, {0, top, image.width, height}, [&](cairo_t* cairo) {
     set_colour(cairo, ink);
     cairo_rectangle(cairo, s.margin, baseline - thickness, length, thickness);
     cairo_fill(cairo);
-    draw_text_on_picture(cairo, font, s.small, s.margin + length / 2, baseline - thickness - 0.5 * s.small, captions.scale,
-                         Align::centre);
+    draw_text_on_picture(cairo, font, s.small, s.margin + length / 2, baseline - thickness - 0.5 * s.small,
+                         captions.scale, Align::centre);
   });
 }
 
@@ -97,7 +99,8 @@ void draw_scale_bar(Image& image, const Font& font, const Captions& captions, co
 
 void draw_captions(Image& image, const Font& font, const Frame& frame) {
   const ViewParameters& view = frame.view;
-  if (frame.legend && view.colour_bar) draw_colour_bar(image, font, *frame.legend, frame.legend->mirrored && view.sign_dots);
+  if (frame.legend && view.colour_bar)
+    draw_colour_bar(image, font, *frame.legend, frame.legend->mirrored && view.sign_dots);
   if (frame.profile && view.flow_profile) draw_flow_profile(image, font, *frame.profile);
   if (frame.inset && view.inset) draw_inset(image, font, *frame.inset);
   if (view.triad) draw_triad(image, font, frame.camera);

@@ -11,7 +11,8 @@ int panel_columns(int count, int width, int height) {
   for (int columns = 1; columns <= count; ++columns) {
     const int rows = (count + columns - 1) / columns;
     const double aspect = static_cast<double>(width) * rows / (static_cast<double>(height) * columns);
-    const double cost = std::abs(std::log(aspect / 1.33)) + 0.3 * (rows * columns - count);  // empty places look unfinished
+    const double cost =
+        std::abs(std::log(aspect / 1.33)) + 0.3 * (rows * columns - count);  // empty places look unfinished
     if (cost < least - 1e-12) {
       least = cost;
       best = columns;

@@ -36,7 +36,8 @@ sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
   const double height = 2 * camera.half_height, width = 2 * camera.half_width;
   const double step1 = height / 4.2, step2 = height / 7.5;
   // A following camera carries the window over a net at rest; passing arrows enter from outside the picture.
-  const double shift1 = framing.follows ? camera.target[across] : 0, shift2 = framing.follows ? camera.target[along] : 0;
+  const double shift1 = framing.follows ? camera.target[across] : 0,
+               shift2 = framing.follows ? camera.target[along] : 0;
   const double phase1 = framing.follows ? 0 : (std::lround(width / step1) % 2 == 0 ? 0.5 : 0.0);
   const glm::dvec2 reach = framing.follows ? glm::dvec2(1.2, 1.2) : glm::dvec2(0.94, 0.86);
   const auto first = [](double middle, double extent, double step) { return std::floor((middle - extent) / step); };
@@ -50,7 +51,8 @@ sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
       points.push_back(point);
     }
   sim::Matrix result(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t k = 0; k < points.size(); ++k) result.row(static_cast<Eigen::Index>(k)) = to_sim(points[k]).transpose();
+  for (std::size_t k = 0; k < points.size(); ++k)
+    result.row(static_cast<Eigen::Index>(k)) = to_sim(points[k]).transpose();
   return result;
 }
 

@@ -71,8 +71,9 @@ void check_framing(const Framing& framing, std::span<const StateSummary> states)
                                                 framing.placed ? "move view.eye" : "lower view.zoom"));
   }
   if (!seen)
-    throw std::invalid_argument("this view shows nothing: no vesicle comes into the picture; change view.eye, view.target or "
-                                "view.zoom");
+    throw std::invalid_argument(
+        "this view shows nothing: no vesicle comes into the picture; change view.eye, view.target or "
+        "view.zoom");
 }
 
 }  // namespace render

@@ -70,8 +70,8 @@ Moment Framing::moment(const StateSummary& state) const {
 namespace {
 
 constexpr double tangent_of_half_angle = 0.18;  // vertical; a long lens: shapes are hardly distorted
-constexpr double strays = 1.5;         // follow = "auto": drift / extent above which the camera follows
-constexpr double neighbourhood = 1.7;  // times the vesicle that is followed: room for what happens beside it
+constexpr double strays = 1.5;                  // follow = "auto": drift / extent above which the camera follows
+constexpr double neighbourhood = 1.7;           // times the vesicle that is followed: room for what happens beside it
 
 struct Extent {
   dvec3 lower{1e300}, upper{-1e300};
@@ -167,7 +167,8 @@ bool camera_follows(const ViewParameters& view, const Spread& spread) {
 }
 
 // In the middle of the box that the picture must hold, or where the scene says; and the depth of that box.
-void set_target(Framing& framing, const ViewParameters& view, std::span<const StateSummary> states, const Extent& about_centroid) {
+void set_target(Framing& framing, const ViewParameters& view, std::span<const StateSummary> states,
+                const Extent& about_centroid) {
   const glm::dmat3 from_axes = box_axes(framing), to_axes = glm::transpose(from_axes);
   Extent all = about_centroid;
   if (!framing.follows) {
@@ -233,8 +234,10 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
   const Spread spread = spread_of(framing, states);
   framing.follows = camera_follows(view, spread);
   set_target(framing, view, states, spread.about_centroid);
-  if (view.eye) place_eye(framing, view);
-  else fit(framing, view.zoom, states);
+  if (view.eye)
+    place_eye(framing, view);
+  else
+    fit(framing, view.zoom, states);
   return framing;
 }
 

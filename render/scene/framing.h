@@ -14,12 +14,12 @@ namespace render {
 /// Data of one state for framing: a coarse net of points on every membrane, and their means.
 struct StateSummary {
   double time = 0;
-  glm::dvec3 centroid{0};              ///< of the area of all vesicles
-  std::vector<glm::dvec3> centroids;   ///< of each
+  glm::dvec3 centroid{0};             ///< of the area of all vesicles
+  std::vector<glm::dvec3> centroids;  ///< of each
   /// The same number for each vesicle, one vesicle after the other; relative to its centroid, so that single
   /// precision suffices.
   std::vector<glm::vec3> points;
-  std::vector<glm::vec3> areas;        ///< outward normal times the share of the area that a point represents
+  std::vector<glm::vec3> areas;  ///< outward normal times the share of the area that a point represents
 
   std::size_t points_of_each() const { return points.size() / centroids.size(); }
   glm::dvec3 point(std::size_t k) const { return centroids[k / points_of_each()] + glm::dvec3(points[k]); }
@@ -35,14 +35,14 @@ struct Moment {
 
 /// One framing for a whole movie, so that the scale does not jump or fluctuate.
 struct Framing {
-  ViewAxes axes;               ///< of a camera that does not turn
-  std::vector<CameraKey> keys; ///< sorted by time; if not empty, they determine the axes
-  double orbit = 0;            ///< radians per unit of time about the z axis
-  int vesicle = -1;            ///< followed by the camera; -1: the centroid of all
-  bool follows = false;  ///< target = centroid of the frame's own state
-  glm::dvec3 target{0};  ///< of a fixed framing
-  glm::dvec3 offset{0};  ///< of a following one: target - centroid
-  bool placed = false;   ///< the scene sets the position of the eye
+  ViewAxes axes;                ///< of a camera that does not turn
+  std::vector<CameraKey> keys;  ///< sorted by time; if not empty, they determine the axes
+  double orbit = 0;             ///< radians per unit of time about the z axis
+  int vesicle = -1;             ///< followed by the camera; -1: the centroid of all
+  bool follows = false;         ///< target = centroid of the frame's own state
+  glm::dvec3 target{0};         ///< of a fixed framing
+  glm::dvec3 offset{0};         ///< of a following one: target - centroid
+  bool placed = false;          ///< the scene sets the position of the eye
   bool perspective = true;
   double distance = 10;      ///< from the eye to the target, when perspective
   double half_height = 1;    ///< of the picture in the plane of the target, length

@@ -21,7 +21,8 @@ const std::vector<CameraRow>& cameras() {
   static const std::vector<CameraRow> rows{
       {"flow-gradient", "from -y: the flow to the right, its gradient up", axes_turned(0, 0)},
       {"three-quarter", "flow-gradient, from a little to the left and above", axes_turned(-22, 16)},
-      {"flow-vorticity", "from above: the flow to the right, vorticity up the picture", axes_from({0, 0, 1}, {0, 1, 0})},
+      {"flow-vorticity", "from above: the flow to the right, vorticity up the picture",
+       axes_from({0, 0, 1}, {0, 1, 0})},
       {"gradient-vorticity", "against the flow: its gradient up", axes_from({1, 0, 0}, {0, 0, 1})},
       {"along-flow", "with the flow, from behind: its gradient up", axes_from({-1, 0, 0}, {0, 0, 1})},
   };
