@@ -11,6 +11,7 @@
 #include "sim/stepping/simulate.h"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 namespace app {
 
@@ -41,6 +42,7 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   };
   observer.on_ready = ready;
   observer.should_stop = [] { return interrupted(); };
+  if (scene.numerics.threads > 0) omp_set_num_threads(scene.numerics.threads);
   const sim::SimulationOutcome outcome = sim::simulate(scene, how, observer);
 
   SimulationReport report;

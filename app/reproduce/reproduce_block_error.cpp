@@ -65,12 +65,12 @@ void measure(Errors& errors, sim::Plans& plans, int p, double gap, std::size_t c
   scene.vesicles[0].center = {0, 0, half + gap / 2};
   scene.vesicles[1].center = {0, 0, -half - gap / 2};
   scene.numerics.gmres_tolerance = 1e-11;
-  const sim::Setting setting = sim::make_setting(scene, plans);
-  sim::Dynamics d = sim::initial_dynamics(setting);
-  const sim::State now = sim::evaluate(setting, d).value();
+  const sim::Model model = sim::make_model(scene, plans);
+  sim::Dynamics d = sim::initial_dynamics(model);
+  const sim::State now = sim::evaluate(model, d).value();
   for (std::size_t k = 0; k < 2; ++k) d.vesicles[k].motion = {now.vesicles[k].velocity, now.vesicles[k].tension};
   const auto advance = [&](const char* scheme) {
-    return sim::find_row(sim::scheme_catalogue(), scheme)->function.advance({setting, d, paper_step, scene.flows}).value();
+    return sim::find_row(sim::scheme_catalogue(), scheme)->function.advance({model, d, paper_step, scene.flows}).value();
   };
   const sim::Advance exact = advance("globally-implicit");
   errors.lagged = std::max(errors.lagged, difference(advance("block-implicit"), exact));

@@ -50,12 +50,12 @@ sim::Motion at_rest(int order) {
 }
 
 /// Adds those of one shape; before: its motion one step of the paper earlier.
-void add_iterations(Iterations& sums, sim::Plans& plans, const sim::Setting& setting, const sim::Scene& scene,
+void add_iterations(Iterations& sums, sim::Plans& plans, const sim::Model& model, const sim::Scene& scene,
                     const sim::VesicleDynamics& v, const sim::Motion& before) {
   using sim::Preconditioner;
   const std::vector<sim::Coefficients> x{v.position}, tensions{v.motion.tension};
   const std::vector<int> rates{v.upsampling};
-  const sim::Suspension s = sim::freeze_suspension(plans, setting.materials, x, rates, {}, tensions);
+  const sim::Suspension s = sim::freeze_suspension(plans, model.materials, x, rates, {}, tensions);
   const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero());
   const std::vector<sim::Motion> zero{at_rest(v.position.order)}, last{before};
   const auto count = [&](const std::vector<sim::Motion>& guess, double tolerance, Preconditioner preconditioner) {
@@ -74,8 +74,8 @@ Iterations average_iterations(sim::Plans& plans, int p, double contrast, const E
   const Span span = span_of(effort);
   sim::Scene scene = sheared_prolate(p, contrast);
   scene.time.scheme = "bdf2";
-  const sim::Setting setting = sim::make_setting(scene, plans);
-  sim::Dynamics dynamics = sim::initial_dynamics(setting);
+  const sim::Model model = sim::make_model(scene, plans);
+  sim::Dynamics dynamics = sim::initial_dynamics(model);
   Iterations all;
   int samples = 0;
   const int steps = static_cast<int>(std::lround(span.end / paper_step));
@@ -84,9 +84,9 @@ Iterations average_iterations(sim::Plans& plans, int p, double contrast, const E
     effort.progress.show(static_cast<double>(k) / steps, fmt::format("λ = {}, p = {}", contrast, p));
     const sim::Motion before = dynamics.vesicles[0].motion;
     for (int part = 0; part < parts; ++part)
-      dynamics = sim::take_step(setting, dynamics, paper_step / parts).value().dynamics;
+      dynamics = sim::take_step(model, dynamics, paper_step / parts).value().dynamics;
     if (k % span.every != span.every - 1) continue;
-    add_iterations(all, plans, setting, scene, dynamics.vesicles[0], before);
+    add_iterations(all, plans, model, scene, dynamics.vesicles[0], before);
     ++samples;
   }
   for (double& sum : all.from_zero) sum /= samples;
@@ -115,11 +115,11 @@ TextTable pair_table(sim::Plans& plans, const Effort& effort) {
     sim::Scene scene = sheared_pair(p, 10);
     scene.vesicles[0].center = {-distance / 2, 0, 0};
     scene.vesicles[1].center = {distance / 2, 0, 0};
-    const sim::Setting setting = sim::make_setting(scene, plans);
-    const sim::Dynamics d = sim::initial_dynamics(setting);
+    const sim::Model model = sim::make_model(scene, plans);
+    const sim::Dynamics d = sim::initial_dynamics(model);
     const std::vector<sim::Coefficients> x{d.vesicles[0].position, d.vesicles[1].position};
     const std::vector<int> rates{d.vesicles[0].upsampling, d.vesicles[1].upsampling};
-    const sim::Suspension s = sim::freeze_suspension(plans, setting.materials, x, rates, {});
+    const sim::Suspension s = sim::freeze_suspension(plans, model.materials, x, rates, {});
     const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero());
     const std::vector<sim::Motion> zero{d.vesicles[0].motion, d.vesicles[1].motion};
     const auto count = [&](Preconditioner preconditioner) {

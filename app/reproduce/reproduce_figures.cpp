@@ -131,12 +131,12 @@ sim::Coefficients full_shape(sim::Plans& plans, int order, double end, const Eff
   vesicle.reduced_volume = 0.65;
   vesicle.order = order;
   scene.vesicles = {vesicle};
-  const sim::Setting setting = sim::make_setting(scene, plans);
-  sim::Dynamics dynamics = sim::initial_dynamics(setting);
+  const sim::Model model = sim::make_model(scene, plans);
+  sim::Dynamics dynamics = sim::initial_dynamics(model);
   while (dynamics.time < end * (1 - 1e-9)) {
     stop_if_interrupted();
     effort.progress.show(dynamics.time / end, "the shape");
-    dynamics = sim::take_step(setting, dynamics, 0.05).value().dynamics;
+    dynamics = sim::take_step(model, dynamics, 0.05).value().dynamics;
   }
   return dynamics.vesicles[0].position;
 }

@@ -37,11 +37,11 @@ struct FixedRun {
 /// Equal steps of the scene's scheme to time `end`, none repeated.
 FixedRun run_fixed(const sim::Scene& scene, sim::Plans& plans, double step, double end) {
   FixedRun run;
-  const sim::Setting setting = sim::make_setting(scene, plans);
-  sim::Dynamics dynamics = sim::initial_dynamics(setting);
+  const sim::Model model = sim::make_model(scene, plans);
+  sim::Dynamics dynamics = sim::initial_dynamics(model);
   while (dynamics.time < end * (1 - 1e-12)) {
     stop_if_interrupted();
-    sim::Attempt<sim::Step> taken = sim::take_step(setting, dynamics, step);
+    sim::Attempt<sim::Step> taken = sim::take_step(model, dynamics, step);
     if (!taken) {
       run.reason = taken.rejection().reason;
       return run;

@@ -32,14 +32,14 @@ Report reproduce_tank_treading(const Effort& effort) {
       sim::Scene scene = sheared_prolate(order, sweep.contrast);
       scene.vesicles[0].reduced_volume = volume;
       scene.time.step = step;
-      const sim::Setting setting = sim::make_setting(scene, plans);
-      sim::Dynamics dynamics = sim::initial_dynamics(setting);
+      const sim::Model model = sim::make_model(scene, plans);
+      sim::Dynamics dynamics = sim::initial_dynamics(model);
       while (dynamics.time < end * (1 - 1e-9)) {
         stop_if_interrupted();
         effort.progress.show((done + dynamics.time / end) / all, fmt::format("λ = {}, ν = {}", sweep.contrast, volume));
-        dynamics = sim::take_step(setting, dynamics, step).value().dynamics;
+        dynamics = sim::take_step(model, dynamics, step).value().dynamics;
       }
-      points.push_back(steady_point(plans, sim::evaluate(setting, dynamics).value().vesicles[0], sweep.contrast, 1));
+      points.push_back(steady_point(plans, sim::evaluate(model, dynamics).value().vesicles[0], sweep.contrast, 1));
       done += 1;
     }
 

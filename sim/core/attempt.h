@@ -36,4 +36,13 @@ class Attempt {
   std::variant<T, Rejection> result_;
 };
 
+/// f(), an Attempt. What has no geometry, a surface that is none or one that crosses another, throws std::domain_error from deep
+/// below: it is rejected.
+template <class F>
+auto within_domain(F&& f) -> decltype(f()) try {
+  return f();
+} catch (const std::domain_error& error) {
+  return Rejection{error.what()};
+}
+
 }  // namespace sim

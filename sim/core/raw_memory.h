@@ -9,30 +9,21 @@
 #include <utility>
 #include <vector>
 
-#include <sys/mman.h>
-
 namespace sim {
+
+void* allocate_raw(std::size_t bytes);
+void free_raw(void*, std::size_t bytes);
 
 template <class T>
 struct RawAllocator {
   using value_type = T;
-  static constexpr std::size_t huge_page = std::size_t(2) << 20, large = std::size_t(32) << 20;  ///< bytes
 
   RawAllocator() = default;
   template <class U>
   RawAllocator(const RawAllocator<U>&) {}
 
-  T* allocate(std::size_t n) {
-    const std::size_t bytes = n * sizeof(T);
-    if (bytes < large) return static_cast<T*>(::operator new(bytes));
-    void* p = ::operator new(bytes, std::align_val_t(huge_page));
-    madvise(p, bytes, MADV_HUGEPAGE);  // a hint: without it only time is lost
-    return static_cast<T*>(p);
-  }
-  void deallocate(T* p, std::size_t n) {
-    if (n * sizeof(T) < large) ::operator delete(p);
-    else ::operator delete(p, std::align_val_t(huge_page));
-  }
+  T* allocate(std::size_t n) { return static_cast<T*>(allocate_raw(n * sizeof(T))); }
+  void deallocate(T* p, std::size_t n) { free_raw(p, n * sizeof(T)); }
   /// vector(n) leaves its elements uninitialised.
   template <class U>
   void construct(U* p) noexcept {

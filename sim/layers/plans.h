@@ -1,8 +1,8 @@
-// Cache of the plans of a simulation: built on first use, immutable afterwards, returned by reference.
+// The store of plans a simulation uses: built when first requested, immutable afterwards, returned by reference.
 #pragma once
 
-#include "sim/sphere/basis.h"
 #include "sim/layers/layer_potentials.h"
+#include "sim/sphere/basis.h"
 #include "sim/sphere/rotation.h"
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace sim {
 
-/// Safe for concurrent use: a plan is built once, by the thread that asks first.
+/// Safe for concurrent use: the thread that asks first builds a plan, and only those who ask for that very plan wait for it.
 class Plans {
  public:
   const Basis& basis(int order, int grid_order) { return get(bases_, std::pair(order, grid_order), order, grid_order); }
@@ -21,18 +21,40 @@ class Plans {
   }
   const RotationPlan& rotation(int order) { return get(rotations_, order, order); }
 
+  /// Between two steps, while nobody holds a reference: drops what has not been asked for in the last `rounds` calls, so that a
+  /// run whose orders change keeps no more than it needs.
+  void forget_unused(int rounds = 100);
+  std::size_t size() const;  ///< number of plans
+
  private:
-  template <class Map, class Key, class... Arguments>
-  typename Map::mapped_type::element_type& get(Map& map, const Key& key, Arguments... arguments) {
-    const std::lock_guard lock(mutex_);
-    auto& slot = map[key];
-    if (!slot) slot = std::make_unique<typename Map::mapped_type::element_type>(arguments...);
-    return *slot;
+  template <class Plan>
+  struct Slot {
+    std::once_flag once;
+    std::unique_ptr<const Plan> plan;
+    std::int64_t used = 0;  ///< round in which it was last asked for
+  };
+  template <class Key, class Plan>
+  using Table = std::map<Key, std::unique_ptr<Slot<Plan>>>;
+
+  template <class Key, class Plan, class... Arguments>
+  const Plan& get(Table<Key, Plan>& table, const Key& key, Arguments... arguments) {
+    Slot<Plan>* slot = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      auto& place = table[key];
+      if (!place) place = std::make_unique<Slot<Plan>>();
+      slot = place.get();
+      slot->used = round_;
+    }
+    std::call_once(slot->once, [&] { slot->plan = std::make_unique<const Plan>(arguments...); });
+    return *slot->plan;
   }
-  std::mutex mutex_;
-  std::map<std::pair<int, int>, std::unique_ptr<Basis>> bases_;
-  std::map<std::pair<int, int>, std::unique_ptr<LayerPotentials>> layers_;
-  std::map<int, std::unique_ptr<RotationPlan>> rotations_;
+
+  mutable std::mutex mutex_;
+  std::int64_t round_ = 0;
+  Table<std::pair<int, int>, Basis> bases_;
+  Table<std::pair<int, int>, LayerPotentials> layers_;
+  Table<int, RotationPlan> rotations_;
 };
 
 }  // namespace sim

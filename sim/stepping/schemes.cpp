@@ -67,7 +67,7 @@ struct Frozen {
 /// and histories are the caller's.
 Attempt<Advance> implicit_step(const StepProblem& problem, const Frozen& frozen, std::span<const Motion> guess,
                                const Frames* moving) {
-  const Setting& s = problem.setting;
+  const Model& s = problem.model;
   const std::vector<Frame> reference = moving ? moving->last : frames(problem.before);
   const Suspension suspension = freeze(s, problem.before, frozen.at);
   const auto r = suspension_forcing(suspension, problem.flows, frozen.time, s.scene.buoyancy.gravity, frozen.behind);
@@ -175,7 +175,7 @@ Attempt<Advance> bdf2(const StepProblem& problem) {
 /// The three schemes that solve vesicle by vesicle: what the others do is that of x_n, sigma_n, u_n.
 Attempt<Advance> block_scheme(const StepProblem& problem,
                               Solve (*solve_self)(const Membrane&, double dt, const Coefficients& r, const Motion&, double)) {
-  const Setting& s = problem.setting;
+  const Model& s = problem.model;
   const Dynamics& d = problem.before;
   const double dt = problem.dt;
   const auto x = positions(d);
@@ -245,18 +245,18 @@ const Scheme& scheme_of(const Scene& scene) {
   return row->function;
 }
 
-Setting make_setting(const Scene& scene, Plans& plans) {
-  Setting s{scene, plans, {}};
+Model make_model(const Scene& scene, Plans& plans) {
+  Model s{scene, plans, {}};
   for (const VesicleParameters& v : scene.vesicles)
     s.materials.push_back({v.viscosity_contrast, v.bending_modulus, v.density_difference});
   return s;
 }
 
-double gap_floor(const Setting& s, const Dynamics& d) {
+double gap_floor(const Model& s, const Dynamics& d) {
   return s.scene.numerics.gap_floor.value_or(default_gap_floor * smallest_radius(sizes(d)));
 }
 
-Suspension freeze(const Setting& s, const Dynamics& d, std::span<const Coefficients> frozen) {
+Suspension freeze(const Model& s, const Dynamics& d, std::span<const Coefficients> frozen) {
   const NumericsParameters& n = s.scene.numerics;
   SuspensionOptions options{n.source_order, {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
                             n.repulsion_strength, n.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes(d)))};
@@ -267,7 +267,7 @@ Suspension freeze(const Setting& s, const Dynamics& d, std::span<const Coefficie
                            pinned_tensions(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, frozen, sizes(d)));
 }
 
-Attempt<SuspensionSolve> solve(const Setting& s, const Suspension& suspension, double c, std::span<const Coefficients> r,
+Attempt<SuspensionSolve> solve(const Model& s, const Suspension& suspension, double c, std::span<const Coefficients> r,
                                std::span<const Motion> guess, std::span<const Frame> frames) {
   const Preconditioner kind =
       s.scene.numerics.preconditioner == "block" ? Preconditioner::block : Preconditioner::spectral;

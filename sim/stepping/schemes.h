@@ -25,16 +25,16 @@
 namespace sim {
 
 /// A scene with its plans: what stays the same during a run.
-struct Setting {
+struct Model {
   const Scene& scene;
   Plans& plans;
   std::vector<Material> materials;
 };
-Setting make_setting(const Scene&, Plans&);
+Model make_model(const Scene&, Plans&);
 
 /// A step to take: from a state, over dt, in the flows that act during it.
 struct StepProblem {
-  const Setting& setting;
+  const Model& model;
   const Dynamics& before;
   double dt;
   std::vector<FlowParameters> flows;  ///< none is switched within the step
@@ -68,13 +68,13 @@ const Scheme& scheme_of(const Scene&);
 
 /// Smallest gap between two membranes; a run stops below it: numerics.gap_floor, or 0.001 area radii of the smallest
 /// vesicle.
-double gap_floor(const Setting&, const Dynamics&);
+double gap_floor(const Model&, const Dynamics&);
 
 /// Operators at frozen positions with everything that the scene says of them. Throws std::domain_error where vesicles cross.
-Suspension freeze(const Setting&, const Dynamics&, std::span<const Coefficients> positions);
+Suspension freeze(const Model&, const Dynamics&, std::span<const Coefficients> positions);
 
 /// Solves for the motions at frozen positions, relative to those of the frames.
-Attempt<SuspensionSolve> solve(const Setting&, const Suspension&, double c, std::span<const Coefficients> forcing,
+Attempt<SuspensionSolve> solve(const Model&, const Suspension&, double c, std::span<const Coefficients> forcing,
                       std::span<const Motion> guess, std::span<const Frame> frames);
 
 /// Of every vesicle; sizes: A0 and V0.

@@ -1,7 +1,6 @@
 #include "sim/stepping/simulate.h"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <chrono>
 #include <cmath>
@@ -28,7 +27,7 @@ double step_length(const Dynamics& d, double target) {
 }
 
 /// Halves a failing step down to step / 2^step_retries, and lets it grow again after some calm ones.
-Attempt<Step> step_with_retries(const Setting& s, Dynamics& d, double target, const SimulationObserver& observer) {
+Attempt<Step> step_with_retries(const Model& s, Dynamics& d, double target, const SimulationObserver& observer) {
   constexpr std::int64_t calm_enough = 8;
   const double longest = longest_step(s.scene), shortest = std::ldexp(longest, -s.scene.numerics.step_retries);
   for (int retries = 0;; ++retries) {
@@ -120,108 +119,139 @@ class ResumeClock {
   std::chrono::steady_clock::time_point last_{};
 };
 
+/// A run under way: the present state, its file, and what of it is not in the file yet.
+class Run {
+ public:
+  Run(const Model& model, const SimulationOptions& options, const SimulationObserver& observer)
+      : model_(model), scene_(model.scene), options_(options), observer_(observer) {
+    noting_ = observer;
+    noting_.on_warning = [this](const std::string& warning) { warn(warning); };
+    if (options.resume) resume();
+    else begin();
+    first_step_ = d_.step;
+  }
+
+  bool reached_end() const { return d_.time >= scene_.time.end * (1 - 1e-12); }
+  bool reached_limit() const { return options_.steps >= 0 && d_.step - first_step_ >= options_.steps; }
+
+  /// One step of Algorithm 2, up to the next saved state or switch of a flow, with all that is due after it.
+  std::optional<Rejection> step() {
+    const double due = save_time(scene_, d_), switched = next_switch(scene_.flows, d_.time);
+    Attempt<Step> step = step_with_retries(model_, d_, std::min(due, switched), noting_);
+    if (!step) return step.rejection();
+    d_ = std::move(step->dynamics);
+    records_.push_back(step->record);
+    if (observer_.on_step) observer_.on_step(d_, step->record);
+    const bool every_step = !scene_.time.save_every;
+    if (every_step || d_.time == due)
+      if (auto rejection = save()) return rejection;
+    if (d_.time == switched)
+      if (auto rejection = begin_anew()) return rejection;
+    warn_of_shapes();
+    if (clock_.due()) write_resume_point();
+    model_.plans.forget_unused();
+    return std::nullopt;
+  }
+
+  SimulationOutcome end(SimulationEnd how, const std::string& reason = {}) {
+    SimulationOutcome outcome{how, {}, d_.step, d_.time};
+    if (how == SimulationEnd::failed) {
+      outcome.reason = fmt::format("t = {:.6g}: {}", d_.time, reason);
+      file_->note("stopped at " + outcome.reason);
+      if (file_->last_time() < d_.time)
+        if (const auto rejection = save())  // the last good state
+          file_->note(fmt::format("t = {:.6g}: {}", d_.time, rejection->reason));
+    }
+    file_->append_steps(records_);
+    file_->finish_resume(serialised(d_), d_.step);
+    return outcome;
+  }
+
+ private:
+  /// From the scene: the file gets its first state.
+  void begin() {
+    d_ = initial_dynamics(model_);
+    const TrajectoryHeader header{options_.scene_text, options_.program, options_.build, scene_warnings(model_, d_)};
+    if (observer_.on_warning)
+      for (const std::string& warning : header.warnings) observer_.on_warning(warning);
+    for (VesicleDynamics& v : d_.vesicles) v.warned = v.tail > scene_.numerics.tail_warning;
+    const State first = evaluate(model_, d_).value();
+    expect(model_, d_, first);
+    const TrajectoryLayout layout = layout_for(scene_, d_);
+    mark_saved(d_, first);
+    file_.emplace(TrajectoryWriter::create(options_.trajectory, layout, header, first, serialised(d_), observer_.on_ready));
+    if (observer_.on_state) observer_.on_state(first);
+  }
+
+  /// From the last resume point of the file.
+  void resume() {
+    file_.emplace(TrajectoryWriter::resume(options_.trajectory));
+    d_ = resumed(*file_, scene_, options_.trajectory);
+    if (observer_.on_ready) observer_.on_ready();
+    if (options_.another_time && d_.time < scene_.time.end) file_->continue_as(options_.scene_text, layout_for(scene_, d_));
+  }
+
+  std::optional<Rejection> save() {
+    const Attempt<State> state = evaluate(model_, d_);
+    if (!state) return state.rejection();
+    file_->append(*state, records_);
+    records_.clear();
+    mark_saved(d_, *state);
+    if (observer_.on_state) observer_.on_state(*state);
+    return std::nullopt;
+  }
+
+  std::optional<Rejection> begin_anew() {
+    Attempt<Dynamics> anew = begun_anew(model_, d_);
+    if (!anew) return anew.rejection();
+    d_ = std::move(*anew);
+    return std::nullopt;
+  }
+
+  void warn(const std::string& warning) {
+    file_->note(warning);
+    if (observer_.on_warning) observer_.on_warning(warning);
+  }
+
+  /// Once a vesicle and run: a shape may cross the bound often.
+  void warn_of_shapes() {
+    for (std::size_t k = 0; k < d_.vesicles.size(); ++k)
+      if (VesicleDynamics& v = d_.vesicles[k]; !v.warned && v.tail > scene_.numerics.tail_warning) {
+        v.warned = true;
+        warn(fmt::format("t = {:.6g}: {}", d_.time, resolution_warning(model_, d_, k)));
+      }
+  }
+
+  void write_resume_point() {
+    file_->append_steps(records_);
+    records_.clear();
+    file_->write_resume(serialised(d_));
+  }
+
+  const Model& model_;
+  const Scene& scene_;
+  const SimulationOptions& options_;
+  const SimulationObserver& observer_;
+  SimulationObserver noting_;  ///< whose warnings are noted in the file
+  Dynamics d_;
+  std::optional<TrajectoryWriter> file_;
+  std::vector<StepRecord> records_;  ///< of steps that are not in the file yet
+  std::int64_t first_step_ = 0;
+  ResumeClock clock_;
+};
+
 }  // namespace
 
 SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options, const SimulationObserver& observer) {
-  if (scene.numerics.threads > 0) omp_set_num_threads(scene.numerics.threads);
   Plans plans;
-  const Setting setting = make_setting(scene, plans);
-
-  // The state to start from: the scene's, or the file's last resume point.
-  Dynamics d;
-  std::optional<TrajectoryWriter> file;
-  if (options.resume) {
-    file.emplace(TrajectoryWriter::resume(options.trajectory));
-    d = resumed(*file, scene, options.trajectory);
-    if (observer.on_ready) observer.on_ready();
-    if (options.another_time && d.time < scene.time.end) file->continue_as(options.scene_text, layout_for(scene, d));
-  } else {
-    d = initial_dynamics(setting);
-    const TrajectoryHeader header{options.scene_text, options.program, options.build, scene_warnings(setting, d)};
-    if (observer.on_warning)
-      for (const std::string& warning : header.warnings) observer.on_warning(warning);
-    for (VesicleDynamics& v : d.vesicles) v.warned = v.tail > scene.numerics.tail_warning;
-    const State first = evaluate(setting, d).value();
-    expect(setting, d, first);
-    const TrajectoryLayout layout = layout_for(scene, d);
-    mark_saved(d, first);
-    file.emplace(TrajectoryWriter::create(options.trajectory, layout, header, first, serialised(d), observer.on_ready));
-    if (observer.on_state) observer.on_state(first);
+  const Model model = make_model(scene, plans);
+  Run run(model, options, observer);
+  while (!run.reached_end()) {
+    if (run.reached_limit()) return run.end(SimulationEnd::step_limit);
+    if (const auto rejection = run.step()) return run.end(SimulationEnd::failed, rejection->reason);
+    if (observer.should_stop && observer.should_stop()) return run.end(SimulationEnd::interrupted);
   }
-
-  ResumeClock clock;
-  std::vector<StepRecord> records;
-  const auto warn = [&](const std::string& warning) {
-    file->note(warning);
-    if (observer.on_warning) observer.on_warning(warning);
-  };
-  SimulationObserver noting = observer;
-  noting.on_warning = warn;
-  const auto save = [&]() -> std::optional<Rejection> {
-    const Attempt<State> state = evaluate(setting, d);
-    if (!state) return state.rejection();
-    file->append(*state, records);
-    records.clear();
-    mark_saved(d, *state);
-    if (observer.on_state) observer.on_state(*state);
-    return std::nullopt;
-  };
-  SimulationOutcome outcome;
-  const auto fail = [&](const Rejection& rejection) {
-    outcome.end = SimulationEnd::failed;
-    outcome.reason = fmt::format("t = {:.6g}: {}", d.time, rejection.reason);
-    file->note("stopped at " + outcome.reason);
-  };
-  const std::int64_t first_step = d.step;
-  while (d.time < scene.time.end * (1 - 1e-12)) {
-    if (options.steps >= 0 && d.step - first_step >= options.steps) {
-      outcome.end = SimulationEnd::step_limit;
-      break;
-    }
-    const bool every_step = !scene.time.save_every;
-    const double due = save_time(scene, d), switched = next_switch(scene.flows, d.time), target = std::min(due, switched);
-    Attempt<Step> step = step_with_retries(setting, d, target, noting);
-    if (!step) {
-      fail(step.rejection());
-      break;
-    }
-    d = std::move(step->dynamics);
-    records.push_back(step->record);
-    if (observer.on_step) observer.on_step(d, step->record);
-    std::optional<Rejection> unsaved;
-    if (every_step || d.time == due) unsaved = save();
-    if (!unsaved && d.time == switched) {
-      Attempt<Dynamics> anew = begun_anew(setting, d);
-      if (anew) d = std::move(*anew);
-      else unsaved = anew.rejection();
-    }
-    if (unsaved) {
-      fail(*unsaved);
-      break;
-    }
-    for (std::size_t k = 0; k < d.vesicles.size(); ++k)  // one warning a vesicle and run: a shape may cross the bound often
-      if (VesicleDynamics& v = d.vesicles[k]; !v.warned && v.tail > scene.numerics.tail_warning) {
-        v.warned = true;
-        warn(fmt::format("t = {:.6g}: {}", d.time, resolution_warning(setting, d, k)));
-      }
-    if (clock.due()) {
-      file->append_steps(records);
-      records.clear();
-      file->write_resume(serialised(d));
-    }
-    if (observer.should_stop && observer.should_stop()) {
-      outcome.end = SimulationEnd::interrupted;
-      break;
-    }
-  }
-  if (outcome.end == SimulationEnd::failed && file->last_time() < d.time)
-    if (const auto rejection = save())  // the last good state
-      file->note(fmt::format("t = {:.6g}: {}", d.time, rejection->reason));
-  file->append_steps(records);
-  file->finish_resume(serialised(d), d.step);
-  outcome.step = d.step;
-  outcome.time = d.time;
-  return outcome;
+  return run.end(SimulationEnd::finished);
 }
 
 Dynamics resume_point(const TrajectoryReader& file, const std::filesystem::path& path) {
@@ -230,9 +260,9 @@ Dynamics resume_point(const TrajectoryReader& file, const std::filesystem::path&
 
 Preview preview(const Scene& scene) {
   Plans plans;
-  const Setting setting = make_setting(scene, plans);
-  const Dynamics d = initial_dynamics(setting);
-  return {evaluate(setting, d).value(), scene_warnings(setting, d)};
+  const Model model = make_model(scene, plans);
+  const Dynamics d = initial_dynamics(model);
+  return {evaluate(model, d).value(), scene_warnings(model, d)};
 }
 
 }  // namespace sim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/stepping/stepper.h"
+#include "sim/stepping/warnings.h"
 
 #include <filesystem>
 #include <functional>

@@ -1,5 +1,6 @@
 #include "sim/trajectory/trajectory.h"
 
+#include "sim/trajectory/trajectory_datasets.h"
 #include "sim/trajectory/trajectory_file.h"
 
 #include <fmt/format.h>

@@ -24,8 +24,6 @@ struct Map {
   const Place& at(std::string_view name) const { return datasets.find(name)->second; }
 };
 
-inline constexpr std::uint64_t note_bytes = 256, note_rows = 64;
-
 /// Turns a draft into an empty file of that layout: header, all datasets allocated (sparse) and zero. Errors name
 /// `path`, the final name.
 void create(const Draft&, const std::filesystem::path& path, const TrajectoryLayout&, const TrajectoryHeader&);

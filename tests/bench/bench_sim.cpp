@@ -104,7 +104,7 @@ void step(benchmark::State& state, double contrast, const char* reparametrizatio
   Plans plans;
   Scene scene = test::shear_scene(prolate(p, contrast), 0.1, 1e9);
   scene.numerics.reparametrization = reparametrization;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   Dynamics d = take_step(s, initial_dynamics(s), 0.1).value().dynamics;  // makes the plans
   double iterations = 0, relabelled = 0;
   for (auto _ : state) {
@@ -123,7 +123,7 @@ void evaluation(benchmark::State& state) {
   const int p = int(state.range(0));
   Plans plans;
   const Scene scene = test::shear_scene(prolate(p, 10), 0.1, 1e9);
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 2);
   for (auto _ : state) benchmark::DoNotOptimize(evaluate(s, d).value());
 }
@@ -161,7 +161,7 @@ void suspension_product(benchmark::State& state) {
   omp_set_num_threads(omp_get_num_procs());
   Plans plans;
   const Scene scene = suspension_scene(int(state.range(0)));
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d = initial_dynamics(s);
   std::vector<Coefficients> x;
   std::vector<Densities> densities;
@@ -185,7 +185,7 @@ void suspension_step(benchmark::State& state) {
   omp_set_num_threads(omp_get_num_procs());
   Plans plans;
   const Scene scene = suspension_scene(int(state.range(0)));
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d = initial_dynamics(s);
   int iterations = 0;
   for (auto _ : state) iterations = take_step(s, d, 0.1).value().record.iterations;

@@ -30,17 +30,17 @@ const sim::Scene& scene() {
   return scene;
 }
 
-sim::Setting& setting() {
+sim::Model& model() {
   static sim::Plans plans;
-  static sim::Setting setting = sim::make_setting(scene(), plans);
-  return setting;
+  static sim::Model model = sim::make_model(scene(), plans);
+  return model;
 }
 
 const std::vector<double>& whole() {
   static const std::vector<double> numbers = [] {
-    sim::Dynamics d = sim::initial_dynamics(setting());
-    sim::mark_saved(d, sim::evaluate(setting(), d).value());
-    return sim::serialised(sim::take_step(setting(), d, scene().time.step).value().dynamics);
+    sim::Dynamics d = sim::initial_dynamics(model());
+    sim::mark_saved(d, sim::evaluate(model(), d).value());
+    return sim::serialised(sim::take_step(model(), d, scene().time.step).value().dynamics);
   }();
   return numbers;
 }
@@ -100,7 +100,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
       });
       for (const sim::PastLevel& level : v.history.levels) fits(level.position);
     }
-    if (d.vesicles.front().position.order == order) sim::take_step(setting(), d, scene().time.step);
+    if (d.vesicles.front().position.order == order) sim::take_step(model(), d, scene().time.step);
   });
   return 0;
 }

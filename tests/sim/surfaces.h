@@ -91,7 +91,7 @@ inline sim::Scene shear_scene(const sim::VesicleParameters& v, double step, doub
 }
 
 /// Takes `count` equal steps.
-inline sim::Dynamics advanced(const sim::Setting& s, sim::Dynamics d, double dt, int count) {
+inline sim::Dynamics advanced(const sim::Model& s, sim::Dynamics d, double dt, int count) {
   for (int k = 0; k < count; ++k) d = sim::take_step(s, d, dt).value().dynamics;
   return d;
 }

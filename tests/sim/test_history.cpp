@@ -38,7 +38,7 @@ TEST_CASE("a turn of the parameters between two steps moves the grid points and 
   INFO(scheme);
   Plans plans;
   const Scene scene = pair_scene(scheme);
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics before = test::advanced(s, initial_dynamics(s), 0.1, 3);
   Dynamics turned = before;
   const Relabelling r = parameter_turn(8, Eigen::AngleAxisd(0.8, Vec3(1, 2, -0.5).normalized()).toRotationMatrix());
@@ -66,7 +66,7 @@ TEST_CASE("a turn of the parameters between two steps moves the grid points and 
 TEST_CASE("every field of a vesicle is carried by a relabelling, and nothing else is touched") {
   Plans plans;
   const Scene scene = pair_scene("bdf2");
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 2);
   const VesicleDynamics before = d.vesicles[0];
   const Relabelling r = parameter_turn(8, Eigen::AngleAxisd(1.1, Vec3::UnitY()).toRotationMatrix());
@@ -127,7 +127,7 @@ TEST_CASE("a scheme leaves a history of as many levels as it says") {
     INFO(row.name);
     Plans plans;
     const Scene scene = pair_scene(std::string(row.name));
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     const Dynamics d = test::advanced(s, initial_dynamics(s), 0.05, row.function.past_levels + 2);
     for (const VesicleDynamics& v : d.vesicles) CHECK(int(v.history.levels.size()) == row.function.past_levels);
     CHECK(serialised(d).size() == resume_numbers(d, row.function.past_levels));
@@ -142,10 +142,10 @@ TEST_CASE("every scheme estimates the error of its step, and the estimate falls 
   scene.numerics.correction = false;
   scene.numerics.reparametrization = "off";
   scene.numerics.upsampling = 3;
-  const Setting fine = make_setting(scene, plans);
+  const Model fine = make_model(scene, plans);
   Scene coarse_scene = scene;
   coarse_scene.time.scheme = scheme;
-  const Setting coarse = make_setting(coarse_scene, plans);
+  const Model coarse = make_model(coarse_scene, plans);
   const double start = 0.8;  // the shape is then on its way
   const auto estimate_and_error = [&](double dt) {
     constexpr int parts = 40;

@@ -134,7 +134,7 @@ TEST_CASE("the block scheme of a close pair differs from the coupled one by the 
     Scene scene = pair_scene({0, 0, 0.8}, dt, 4, scheme);
     scene.numerics.correction = false;
     scene.numerics.reparametrization = "off";
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     return Matrix(test::advanced(s, initial_dynamics(s), dt, int(std::lround(0.2 / dt))).vesicles[0].position.values);
   };
   const Matrix exact = position("bdf2", 0.025);
@@ -199,7 +199,7 @@ TEST_CASE("two sinking spheres far apart follow the method of reflections with a
       v.center = side * r * along;
       scene.vesicles.push_back(v);
     }
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     const State state = evaluate(s, initial_dynamics(s)).value();
     const double u = -state.vesicles[0].velocity.values(0, 2) / std::sqrt(4 * pi);  // mean over the sphere
     const double a = 1 / r;
@@ -215,7 +215,7 @@ TEST_CASE("two sinking spheres far apart follow the method of reflections with a
 TEST_CASE("identical vesicles at x and -x stay point-symmetric") {
   Plans plans;
   const Scene scene = pair_scene({1.3, 0, -0.6}, 0.1);
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 5);
   const Matrix dots = tracer_directions();
   const Matrix a = sample_points(d.vesicles[0].position, dots), b = sample_points(d.vesicles[1].position, -dots);
@@ -229,7 +229,7 @@ TEST_CASE("all schemes agree to first order in the step on one vesicle") {
     Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 6, lambda), dt, 1, scheme);
     scene.numerics.correction = false;
     scene.numerics.reparametrization = "off";
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     return Matrix(test::advanced(s, initial_dynamics(s), dt, int(std::lround(0.2 / dt))).vesicles[0].position.values);
   };
   const Matrix exact = position("bdf2", 0.01);
@@ -248,7 +248,7 @@ TEST_CASE("block and global solves agree when vesicles are far apart, and differ
     std::vector<Matrix> x;
     for (const char* scheme : {"block-implicit", "globally-implicit"}) {
       const Scene scene = pair_scene({0, 0, distance / 2}, 0.1, 10, scheme);
-      const Setting s = make_setting(scene, plans);
+      const Model s = make_model(scene, plans);
       x.push_back(test::advanced(s, initial_dynamics(s), 0.1, 1).vesicles[0].position.values);
     }
     return (x[0] - x[1]).norm() / x[1].norm();
@@ -264,7 +264,7 @@ TEST_CASE("with the block preconditioner the coupled solve takes single digits o
   Scene scene = pair_scene({0, 0, 5}, 0.1, 10, "globally-implicit");
   scene.numerics.preconditioner = "block";
   scene.numerics.gmres_tolerance = 1e-8;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   CHECK(take_step(s, initial_dynamics(s), 0.1).value().record.iterations < 10);
 }
 
@@ -300,7 +300,7 @@ TEST_CASE("overlapping and nested vesicles are refused with their numbers") {
     other.radius = distance == 0 ? 0.4 : 1;
     other.center = {distance, 0, 0};
     scene.vesicles.push_back(other);
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     CHECK_THROWS_WITH(initial_dynamics(s), Catch::Contains("vesicles 0 and 1 overlap"));
   }
 }
@@ -311,7 +311,7 @@ TEST_CASE("a pair gives the same bits with one and with two threads") {
     const int before = omp_get_max_threads();
     omp_set_num_threads(threads);
     Plans plans;
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     const std::vector<double> numbers = serialised(test::advanced(s, initial_dynamics(s), 0.1, 2));
     omp_set_num_threads(before);
     return numbers;

@@ -9,7 +9,7 @@ using test::pi;
 namespace {
 
 /// A prolate whose grid has been twisted by the flow: something a relabelling has work to do on.
-Dynamics twisted(const Setting& s, int steps = 12) { return test::advanced(s, initial_dynamics(s), 0.1, steps); }
+Dynamics twisted(const Model& s, int steps = 12) { return test::advanced(s, initial_dynamics(s), 0.1, steps); }
 
 Scene twist_scene(const char* mode) {
   Scene scene = test::shear_scene(test::vesicle("prolate", 0.85, 12), 0.1, 10);
@@ -36,8 +36,8 @@ Vec3 where_label_is(const Coefficients& labels, const Vec3& label, Vec3 s) {
 TEST_CASE("relabelling lowers the high degrees and leaves the surface where it was") {
   Plans plans;
   const Scene scene = twist_scene("off");
-  const Setting setting = make_setting(scene, plans);
-  const Coefficients x = twisted(setting, 20).vesicles[0].position;
+  const Model model = make_model(scene, plans);
+  const Coefficients x = twisted(model, 20).vesicles[0].position;
   const Relabelling r = relabel(plans, x, 24);
   CHECK(r.high_after < 0.75 * r.high_before);
   const Coefficients y = pulled_back(plans, r, x);
@@ -52,8 +52,8 @@ TEST_CASE("relabelling lowers the high degrees and leaves the surface where it w
 TEST_CASE("what is carried through a relabelling stays at its material point") {
   Plans plans;
   const Scene scene = twist_scene("off");
-  const Setting setting = make_setting(scene, plans);
-  const Coefficients x = twisted(setting, 20).vesicles[0].position;
+  const Model model = make_model(scene, plans);
+  const Coefficients x = twisted(model, 20).vesicles[0].position;
   const Relabelling r = relabel(plans, x, 24);
   const Coefficients y = pulled_back(plans, r, x), labels = pulled_back(plans, r, fresh_labels(24));
   const Matrix dots = tracer_directions(), carried = carried_points(r, x, y, dots);
@@ -69,7 +69,7 @@ TEST_CASE("a labelled point followed with relabelling at every step and without 
   const auto dots_after = [](const char* mode, bool by_labels) {
     Plans plans;
     const Scene scene = twist_scene(mode);
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     const VesicleDynamics v = twisted(s).vesicles[0];
     if (std::string(mode) == "always") REQUIRE(v.relabelled >= 5);
     if (!by_labels) return Matrix(sample_points(v.position, v.tracers));
@@ -96,7 +96,7 @@ TEST_CASE("fresh labels are the sphere itself and count as resolved") {
 TEST_CASE("the two ends of an interpolation are given in one parametrisation") {
   Plans plans;
   Scene scene = twist_scene("always");
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   Dynamics d = initial_dynamics(s);
   mark_saved(d, evaluate(s, d).value());
   d = test::advanced(s, d, 0.1, 5);
@@ -124,9 +124,9 @@ Coefficients between(const VesicleState& b, double h, double u, bool rate) {
 TEST_CASE("labels are material: over a tank-treading period they stay with points carried by the membrane's velocity") {
   Plans plans;
   Scene scene = test::shear_scene(test::vesicle("prolate", 0.85, 12), 0.1, 20);
-  const Setting setting = make_setting(scene, plans);
-  Dynamics d = initial_dynamics(setting);
-  mark_saved(d, evaluate(setting, d).value());
+  const Model model = make_model(scene, plans);
+  Dynamics d = initial_dynamics(model);
+  mark_saved(d, evaluate(model, d).value());
   const Matrix dots = tracer_directions();
   Matrix carried = sample_points(d.vesicles[0].position, dots), near = dots;  // points in space, and parameters to start from
   double worst = 0, turned = 0;
@@ -136,8 +136,8 @@ TEST_CASE("labels are material: over a tank-treading period they stay with point
     const double start = d.time;
     // At this order it is seldom due; here it is done every unit of time.
     scene.numerics.reparametrization = d.step % 10 == 0 ? "always" : "off";
-    d = test::advanced(setting, d, 0.1, 2);
-    const State state = evaluate(setting, d).value();
+    d = test::advanced(model, d, 0.1, 2);
+    const State state = evaluate(model, d).value();
     mark_saved(d, state);
     const VesicleState& b = state.vesicles[0];
     const double h = d.time - start;

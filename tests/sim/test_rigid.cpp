@@ -39,7 +39,7 @@ struct End {
 };
 End end_of(const Scene& scene, double dt, int steps) {
   Plans plans;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d = test::advanced(s, initial_dynamics(s), dt, steps);
   const State state = evaluate(s, d).value();
   return {measure(plans, state.vesicles[0], d.vesicles[0].area, d.vesicles[0].volume), state};
@@ -151,7 +151,7 @@ TEST_CASE("spheres turn rigidly with half the shear rate, wherever they are") {
   v.center = {0, 0, height};
   const Scene scene = test::shear_scene(v, dt, 1);
   Plans plans;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics start = initial_dynamics(s), d = test::advanced(s, start, dt, steps);
   const Matrix arm = rigid_body(d.vesicles[0].position).arm.values;
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.5 * dt * steps, Vec3::UnitY()).toRotationMatrix();
@@ -175,7 +175,7 @@ TEST_CASE("nearly round vesicles deform within their excess area without a faile
     VesicleParameters v = test::vesicle("prolate", 1 - excess, 6, lambda);
     const Scene scene = test::shear_scene(v, 0.1, 1);
     Plans plans;
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     Dynamics d = initial_dynamics(s);
     while (d.time < 0.5) d = take_step(s, d, std::min(d.dt_limit, 0.1)).value().dynamics;
     const VesicleMeasures m = measure(plans, evaluate(s, d).value().vesicles[0], d.vesicles[0].area, d.vesicles[0].volume);
@@ -195,7 +195,7 @@ TEST_CASE("two sinking spheres fall side by side, round and faster than one") {
   scene.vesicles[0].center = {-1.5, 0, 0};
   scene.vesicles[1].center = {1.5, 0, 0};
   Plans plans;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 5);
   const State state = evaluate(s, d).value();
   for (std::size_t k = 0; k < 2; ++k) {
@@ -213,7 +213,7 @@ TEST_CASE("the fluid inside of a vesicle that a stream carries moves with the st
   scene.vesicles[0].bending_modulus = 0;
   scene.flows = {stream({3, 1, 0}), rotation({0, 0, 2})};
   Plans plans;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const State state = evaluate(s, initial_dynamics(s)).value();
   const FlowField field = flow_field(plans, scene, state);
   Matrix points(3, 3);

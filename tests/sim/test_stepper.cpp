@@ -146,7 +146,7 @@ TEST_CASE("turning the whole problem turns the velocity and keeps the tension") 
 TEST_CASE("a shape with the symmetry x -> -x about the origin keeps it in shear") {
   Plans plans;
   const Scene scene = test::shear_scene(test::vesicle("prolate", 0.85, 8, 4), 0.1, 1);
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 10);
   // x(-s) = -x(s) holds exactly when the even degrees vanish.
   double even = 0;
@@ -176,7 +176,7 @@ TEST_CASE("the velocity agrees with an independent path: the change of shape ove
   Plans plans;
   Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 8, 2), 1e-3, 1);
   scene.numerics.correction = false;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d0 = initial_dynamics(s), d1 = test::advanced(s, d0, 1e-3, 1);
   const Matrix u = evaluate(s, d0).value().vesicles[0].velocity.values;
   const Matrix slope = (d1.vesicles[0].position.values - d0.vesicles[0].position.values) / 1e-3;
@@ -194,7 +194,7 @@ Matrix position_after(const char* scheme, int count) {
   scene.numerics.reparametrization = "off";
   scene.numerics.upsampling = 3;
   scene.numerics.gmres_tolerance = 1e-12;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   return test::advanced(s, initial_dynamics(s), 0.4 / count, count).vesicles[0].position.values;
 }
 
@@ -216,7 +216,7 @@ TEST_CASE("BDF2 stays of second order when the steps vary in length") {
   scene.numerics.correction = false;
   scene.numerics.reparametrization = "off";
   scene.numerics.upsampling = 3;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const auto run = [&](int refinement) {  // steps of 0.02, 0.04, 0.02, ... split evenly
     Dynamics d = initial_dynamics(s);
     for (int k = 0; k < 6; ++k)
@@ -230,7 +230,7 @@ TEST_CASE("BDF2 stays of second order when the steps vary in length") {
 TEST_CASE("the correction keeps area and volume to 1e-9 through many steps") {
   Plans plans;
   const Scene scene = test::shear_scene(test::vesicle("prolate", 0.85, 8, 10), 0.2, 4);
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   Dynamics d = initial_dynamics(s);
   for (int k = 0; k < 20; ++k) {
     const Step step = take_step(s, d, 0.2).value();
@@ -244,7 +244,7 @@ TEST_CASE("an impossible step fails with a sentence and leaves its input as it w
   Plans plans;
   Scene scene = test::shear_scene(test::vesicle("prolate", 0.6, 6), 1, 10);
   scene.flows[0].rate = 200;
-  const Setting s = make_setting(scene, plans);
+  const Model s = make_model(scene, plans);
   const Dynamics d = initial_dynamics(s);
   const std::vector<double> before = serialised(d);
   CHECK_FALSE(take_step(s, d, 1));
@@ -328,7 +328,7 @@ TEST_CASE("a membrane under tension takes long steps at every order, which it do
     Plans plans;
     Scene scene = test::shear_scene(test::vesicle("prolate", 0.85, p, 1), 0.42, 10);
     scene.numerics.implicit_tension = implicit;
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     Dynamics d = initial_dynamics(s);
     while (d.time < 5) {
       const Attempt<Step> step = take_step(s, d, 0.42);

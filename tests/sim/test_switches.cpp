@@ -105,7 +105,7 @@ TEST_CASE("a flow without strength or that never acts is told of, fluid at rest 
     scene.flows[0] = {};
     scene.flows[0].kind = row.name;
     scene.flows[0].rate = 0;
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     const std::vector<std::string> warnings = scene_warnings(s, initial_dynamics(s));
     if (row.name == "none") {
       CHECK(warnings.empty());
@@ -120,7 +120,7 @@ TEST_CASE("a flow without strength or that never acts is told of, fluid at rest 
   for (const auto& [from, until] : {std::pair{2.0, 3.0}, {0.5, 0.5}, {-2.0, -1.0}}) {
     scene.flows[0].from = from;
     scene.flows[0].until = until;
-    const Setting s = make_setting(scene, plans);
+    const Model s = make_model(scene, plans);
     REQUIRE(scene_warnings(s, initial_dynamics(s)).size() == 1);
     CHECK_THAT(scene_warnings(s, initial_dynamics(s))[0], Catch::Contains("never acts"));
   }

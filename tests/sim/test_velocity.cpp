@@ -25,16 +25,16 @@ Scene scene_of(double lambda, const Eigen::Matrix3d& gradient, const std::string
 }
 
 State solved(Plans& plans, const Scene& scene) {
-  const Setting setting = make_setting(scene, plans);
-  return evaluate(setting, initial_dynamics(setting)).value();
+  const Model model = make_model(scene, plans);
+  return evaluate(model, initial_dynamics(model)).value();
 }
 
 /// The same of one vesicle by the equations (3a)-(3b) alone, which let a sphere stretch.
 State solved_alone(Plans& plans, const Scene& scene) {
-  const Setting setting = make_setting(scene, plans);
+  const Model model = make_model(scene, plans);
   State state = solved(plans, scene);
   VesicleState& v = state.vesicles[0];
-  const Membrane m = freeze_membrane(plans, setting.materials[0], v.position, 2, 0);
+  const Membrane m = freeze_membrane(plans, model.materials[0], v.position, 2, 0);
   const Solve s = solve_system(m, 0, test::forcing(m, scene.flows, Vec3::Zero()), test::at_rest(v.position.order), 1e-12);
   v.velocity = s.motion.velocity;
   v.tension = s.motion.tension;
@@ -145,12 +145,12 @@ TEST_CASE("a drop without tension deforms in a straining flow by 5/(2λ + 3)") {
   scene.vesicles[0].bending_modulus = 0;
   // f = 0: the surface moves with u = A (x.E.x) x + B E.x; normal part 5/(2λ+3). Known from the single-phase moments:
   // u.n = (A + B) x.E.x. Solve (3a) for the dual layer alone by fixed-point iteration with the field itself.
-  const Setting setting = make_setting(scene, plans);
-  State state = evaluate(setting, initial_dynamics(setting)).value();
+  const Model model = make_model(scene, plans);
+  State state = evaluate(model, initial_dynamics(model)).value();
   VesicleState& v = state.vesicles[0];
   v.tension.values.setZero();
   const Basis& basis = plans.basis(8, 9);
-  const Membrane m = freeze_membrane(plans, setting.materials[0], v.position, 2, 0);
+  const Membrane m = freeze_membrane(plans, model.materials[0], v.position, 2, 0);
   const Coefficients background = basis.analyze(background_velocity(scene.flows, 0, basis.synthesize(v.position).values));
   for (int k = 0; k < 200; ++k)  // (1+λ)/2 u = u_inf + (1-λ) D u: contracts with 3/5 · 1.5/2.5
     v.velocity.values = (background.values + (1 - lambda) * m.layers.dual.apply(v.velocity).values) / ((1 + lambda) / 2);

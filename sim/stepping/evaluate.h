@@ -1,0 +1,18 @@
+// From what evolves to what is saved: velocity and tension at the positions of an instant.
+#pragma once
+
+#include "sim/stepping/schemes.h"
+
+namespace sim {
+
+/// On the grid on which areas and volumes are measured.
+Geometry measured_geometry(Plans&, const Coefficients& position);
+
+/// Velocity and tension that solve (3a)-(3b) at the present positions, and all else that is saved.
+Attempt<State> evaluate(const Model&, const Dynamics&);
+/// Takes velocity, tension and frames of a state of the present for what the next step starts from and expects.
+void expect(const Model&, Dynamics&, const State&);
+/// Call it with a state that has been saved: it becomes the earlier end of the next interpolation.
+void mark_saved(Dynamics&, const State&);
+
+}  // namespace sim

@@ -1,0 +1,49 @@
+#include "sim/stepping/warnings.h"
+
+#include "sim/core/digits.h"
+
+#include <fmt/format.h>
+
+namespace sim {
+
+std::string resolution_warning(const Model& s, const Dynamics& d, std::size_t k) {
+  const VesicleDynamics& v = d.vesicles[k];
+  const auto [tail, bound] = told_apart(100 * v.tail, 100 * s.scene.numerics.tail_warning);
+  return fmt::format(
+      "vesicle {}: order {} does not resolve the shape well ({} % of the mean curvature's spectrum lies in its last "
+      "quarter; bound {} %); try order {}",
+      k, v.position.order, tail, bound, v.position.order * 3 / 2);
+}
+
+namespace {
+
+/// The table of the scene that a flow stands in, and the keys that give it a strength.
+std::string still_flow_warning(const Scene& scene, std::size_t k) {
+  const FlowParameters& flow = scene.flows[k];
+  const std::string table = scene.flows.size() > 1 ? fmt::format("[[flow]] {}", k) : "[flow]";
+  if (flow.time_factor == "step" && (flow.from >= flow.until || flow.from >= scene.time.end || flow.until <= 0))
+    return fmt::format("{}: '{}' never acts: from = {}, until = {}, time.end = {}", table, flow.kind, flow.from, flow.until,
+                       scene.time.end);
+  std::string keys;
+  for (std::string_view key : find_row(flow_catalogue(), flow.kind)->keys)
+    if (key != "planar") keys += fmt::format("{}flow.{}", keys.empty() ? "" : " or ", key);
+  return fmt::format("{}: '{}' moves nothing, its strength is 0; give {}", table, flow.kind, keys);
+}
+
+}  // namespace
+
+std::vector<std::string> scene_warnings(const Model& s, const Dynamics& d) {
+  const Scene& scene = s.scene;
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < scene.flows.size(); ++k)
+    if (scene.flows[k].kind != "none" && scene.time.end > 0 && !moves(scene.flows[k], scene.time.end))
+      warnings.push_back(still_flow_warning(scene, k));
+  if (const double longest = longest_step(scene); longest < scene.time.step)
+    warnings.push_back(fmt::format("a flow oscillates {:.3g} times in a step of {:.3g}; steps of {:.3g} are taken, 20 a period",
+                                   scene.time.step / (20 * longest), scene.time.step, longest));
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k)
+    if (d.vesicles[k].tail > scene.numerics.tail_warning) warnings.push_back(resolution_warning(s, d, k));
+  return warnings;
+}
+
+}  // namespace sim

@@ -1,0 +1,14 @@
+// What a user should know of a scene or a state although nothing has failed.
+#pragma once
+
+#include "sim/stepping/start.h"
+
+namespace sim {
+
+/// The warning that vesicle k is not resolved by its order.
+std::string resolution_warning(const Model&, const Dynamics&, std::size_t k);
+/// All warnings about a scene before its first step: unresolved vesicles, flows that move nothing or vary faster than
+/// the step.
+std::vector<std::string> scene_warnings(const Model&, const Dynamics&);
+
+}  // namespace sim
