@@ -161,7 +161,7 @@ StepTables empty_tables(const std::vector<int>& orders) {
   tables.stable = {.caption = "Largest stable γ̇Δt on the ladder; ≥: larger steps were not tried, <: none so large is stable.",
                    .columns = order_columns(orders, {"scheme", "λ", "κ_b"}),
                    .rows = {}};
-  tables.stable.columns.push_back("paper (p = 8, 12, 16, 24, 32)");
+  tables.stable.columns.emplace_back("paper (p = 8, 12, 16, 24, 32)");
   tables.errors = {.caption = "Relative error of the area at T with that step and no correction; 'stops' where the run then stops.",
                    .columns = order_columns(orders, {"scheme", "λ", "κ_b"}),
                    .rows = {}};
@@ -257,7 +257,7 @@ Report reproduce_stable_steps(const Effort& effort) {
     const Fit fit = add_row(tables, row, plans, end, effort);
     if (fit.log_p.size() > 1) report.findings.push_back(fit_text(fit, row.modulus));
   }
-  report.findings.push_back("For λ ≠ 1 the explicit scheme as printed has no double layer at all (in (43) and the update D x cancels "
+  report.findings.emplace_back("For λ ≠ 1 the explicit scheme as printed has no double layer at all (in (43) and the update D x cancels "
                             "against r). Ours keeps that of the step before; it is shown for λ = 1 only, as in the paper.");
   report.tables = {tables.stable, tables.errors, tables.stops, pair_table(plans, end, effort)};
   return report;
