@@ -3,22 +3,11 @@
 #pragma once
 
 #include "app/base/options.h"
-#include "app/scene/settings.h"
-
-#include "render/figures/figure.h"
-#include "sim/trajectory/trajectory.h"
+#include "app/figures/series.h"
 
 #include <filesystem>
 
 namespace app {
-
-/// One trajectory as the source of a figure.
-struct FigureSource {
-  const sim::TrajectoryReader& trajectory;
-  const Settings& settings;
-  std::string name;  ///< in the legend when there are several sources; else empty
-  std::string file = {};  ///< of the trajectory, for messages
-};
 
 /// Whether curves of several trajectories share a figure of this kind; otherwise each gets its own figure.
 bool takes_several(std::string_view kind);

@@ -130,111 +130,139 @@ SteadyPoint keller_skalak(double nu, double lambda) {
   return {nu, lambda, std::acos(1 / b) / 2 / pi, 1 / b / (2 * f1 * q)};
 }
 
-std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& points) {
-  std::vector<double> contrasts = contrasts_of(points);
-  render::Plot angle{{"reduced volume ν", render::Scale::linear, true, true}, {"inclination θ / π", render::Scale::linear, true, true},
-                     {}, {}, {}, {}};
-  render::Plot frequency = angle;
-  frequency.y.label = "frequency ω / γ̇";
-  double least = 0.7;
-  for (const SteadyPoint& p : points) least = std::min(least, p.reduced_volume);
-  least = std::floor(least * 20 - 1e-9) / 20;
-  angle.x_range = frequency.x_range = render::Range{least, 1};
+namespace {
+
+/// The two panels of the figure, filled in step.
+struct Panels {
+  render::Plot angle, frequency;
+};
+
+Panels empty_panels(double least_volume) {
+  Panels panels;
+  render::Plot &angle = panels.angle, &frequency = panels.frequency;
+  angle.x = frequency.x = {.label = "reduced volume ν", .grid = true};
+  angle.y = {.label = "inclination θ / π", .grid = true};
+  frequency.y = {.label = "frequency ω / γ̇", .grid = true};
+  angle.x_range = frequency.x_range = render::Range{least_volume, 1};
   angle.y_range = render::Range{0, 0.26};
   frequency.y_range = render::Range{0, 0.55};
   angle.legend = render::Corner::upper_left;
   frequency.legend = render::Corner::lower_right;
+  return panels;
+}
+
+bool has_curve(const render::Plot& plot, std::string_view name) {
+  return std::any_of(plot.curves.begin(), plot.curves.end(), [&](const render::Curve& c) { return c.name == name; });
+}
+
+/// Keller and Skalak's theory from the least volume to the sphere.
+void add_theory(Panels& panels, double least_volume, double contrast, std::size_t colour) {
+  render::Curve angle, frequency;
+  for (double nu = least_volume; nu < 0.9991; nu += 0.002) {
+    const SteadyPoint t = keller_skalak(nu, contrast);
+    angle.x.push_back(nu);
+    angle.y.push_back(t.angle);
+    frequency.x.push_back(nu);
+    frequency.y.push_back(t.frequency > 0 ? t.frequency : std::nan(""));
+  }
+  angle.colour = frequency.colour = colour;
+  angle.dashed = frequency.dashed = true;
+  angle.csv_name = frequency.csv_name = fmt::format("Keller, Skalak 1982, λ = {}", contrast);
+  if (colour == 0) angle.name = "Keller, Skalak 1982";
+  panels.angle.curves.push_back(angle);
+  panels.frequency.curves.push_back(frequency);
+}
+
+/// Our vesicles of one contrast that tank-tread, by volume.
+void add_settled(Panels& panels, std::vector<SteadyPoint> points, double contrast, std::size_t colour) {
+  std::sort(points.begin(), points.end(),
+            [](const SteadyPoint& a, const SteadyPoint& b) { return a.reduced_volume < b.reduced_volume; });
+  render::Curve angle;
+  angle.colour = colour;
+  angle.marker = render::Marker::ring;
+  angle.line = points.size() > 2;
+  angle.csv_name = fmt::format("Tanktread, λ = {}", contrast);
+  render::Curve frequency = angle;
+  frequency.name = fmt::format("λ = {}", contrast);
+  if (colour == 0) {  // a line of the legend alone
+    render::Curve mark;
+    mark.name = "Tanktread";
+    mark.line = false;
+    mark.marker = render::Marker::ring;
+    panels.angle.curves.push_back(mark);
+  }
+  for (const SteadyPoint& p : points) {
+    angle.x.push_back(p.reduced_volume);
+    angle.y.push_back(p.angle);
+    frequency.x.push_back(p.reduced_volume);
+    frequency.y.push_back(p.frequency);
+  }
+  panels.angle.curves.push_back(angle);
+  panels.frequency.curves.push_back(frequency);
+}
+
+/// Those whose motion was too short to tell.
+void add_unsettled(Panels& panels, const std::vector<SteadyPoint>& points, double contrast, std::size_t colour) {
+  if (points.empty()) return;
+  render::Curve angle;
+  angle.colour = colour;
+  angle.line = false;
+  angle.marker = render::Marker::triangle;
+  angle.csv_name = fmt::format("Tanktread, not settled, λ = {}", contrast);
+  render::Curve frequency = angle;
+  if (!has_curve(panels.angle, "not settled")) angle.name = "not settled";
+  for (const SteadyPoint& p : points) {
+    angle.x.push_back(p.reduced_volume);
+    angle.y.push_back(p.angle);
+    frequency.x.push_back(p.reduced_volume);
+    frequency.y.push_back(p.frequency);
+  }
+  panels.angle.curves.push_back(angle);
+  panels.frequency.curves.push_back(frequency);
+}
+
+/// Points of one contrast, a curve a source.
+void add_literature(render::Plot& plot, const std::vector<LiteraturePoint>& all, double contrast, std::size_t colour, bool named) {
+  std::string_view source;
+  for (const LiteraturePoint& l : all) {
+    if (l.viscosity_contrast != contrast) continue;
+    if (source != l.source) {
+      source = l.source;
+      render::Curve fresh;
+      fresh.colour = colour;
+      fresh.csv_name = fmt::format("{}, λ = {}", source, contrast);
+      fresh.line = false;
+      fresh.marker = source.starts_with("Kraus") ? render::Marker::diamond : render::Marker::square;
+      if (named && !has_curve(plot, source)) fresh.name = source;
+      plot.curves.push_back(fresh);
+    }
+    render::Curve& curve = plot.curves.back();
+    curve.x.push_back(l.reduced_volume);
+    curve.y.push_back(l.value);
+    curve.error.push_back(l.error);
+  }
+}
+
+}  // namespace
+
+std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& points) {
+  double least = 0.7;
+  for (const SteadyPoint& p : points) least = std::min(least, p.reduced_volume);
+  least = std::floor(least * 20 - 1e-9) / 20;
+  Panels panels = empty_panels(least);
+  const std::vector<double> contrasts = contrasts_of(points);
+  for (std::size_t k = 0; k < contrasts.size(); ++k) add_theory(panels, least, contrasts[k], k);
   // Colours tell the contrast, marks the source: sources are named in the first panel, contrasts in the second.
-  const auto literature = [](const std::vector<LiteraturePoint>& all, double contrast, std::size_t colour, render::Plot& plot,
-                             bool named) {
-    std::string_view source;
-    for (const LiteraturePoint& l : all) {
-      if (l.viscosity_contrast != contrast) continue;
-      if (source != l.source) {
-        source = l.source;
-        render::Curve fresh;
-        fresh.colour = colour;
-        fresh.csv_name = fmt::format("{}, λ = {}", source, contrast);
-        fresh.line = false;
-        fresh.marker = source.starts_with("Kraus") ? render::Marker::diamond : render::Marker::square;
-        const bool known = std::any_of(plot.curves.begin(), plot.curves.end(), [&](const auto& c) { return c.name == source; });
-        if (named && !known) fresh.name = source;
-        plot.curves.push_back(fresh);
-      }
-      render::Curve* curve = &plot.curves.back();
-      curve->x.push_back(l.reduced_volume);
-      curve->y.push_back(l.value);
-      curve->error.push_back(l.error);
-    }
-  };
   for (std::size_t k = 0; k < contrasts.size(); ++k) {
-    render::Curve theory_angle, theory_frequency;
-    for (double nu = least; nu < 0.9991; nu += 0.002) {
-      const SteadyPoint t = keller_skalak(nu, contrasts[k]);
-      theory_angle.x.push_back(nu);
-      theory_angle.y.push_back(t.angle);
-      theory_frequency.x.push_back(nu);
-      theory_frequency.y.push_back(t.frequency > 0 ? t.frequency : std::nan(""));
-    }
-    theory_angle.colour = theory_frequency.colour = k;
-    theory_angle.dashed = theory_frequency.dashed = true;
-    theory_angle.csv_name = theory_frequency.csv_name = fmt::format("Keller, Skalak 1982, λ = {}", contrasts[k]);
-    if (k == 0) theory_angle.name = "Keller, Skalak 1982";
-    angle.curves.push_back(theory_angle);
-    frequency.curves.push_back(theory_frequency);
+    std::vector<SteadyPoint> settled, unsettled;
+    for (const SteadyPoint& p : points)
+      if (p.viscosity_contrast == contrasts[k]) (p.motion == Motion::tank_treading ? settled : unsettled).push_back(p);
+    add_settled(panels, settled, contrasts[k], k);
+    add_unsettled(panels, unsettled, contrasts[k], k);
+    add_literature(panels.angle, literature_angles(), contrasts[k], k, true);
+    add_literature(panels.frequency, literature_frequencies(), contrasts[k], k, false);
   }
-  for (std::size_t k = 0; k < contrasts.size(); ++k) {
-    render::Curve ours_angle;
-    ours_angle.colour = k;
-    ours_angle.marker = render::Marker::ring;
-    std::vector<SteadyPoint> own;
-    render::Curve untold_angle;
-    untold_angle.colour = k;
-    untold_angle.line = false;
-    untold_angle.marker = render::Marker::triangle;
-    render::Curve untold_frequency = untold_angle;
-    for (const SteadyPoint& p : points) {
-      if (p.viscosity_contrast != contrasts[k]) continue;
-      if (p.motion == Motion::tank_treading) {
-        own.push_back(p);
-        continue;
-      }
-      untold_angle.x.push_back(p.reduced_volume);
-      untold_angle.y.push_back(p.angle);
-      untold_frequency.x.push_back(p.reduced_volume);
-      untold_frequency.y.push_back(p.frequency);
-    }
-    std::sort(own.begin(), own.end(), [](const SteadyPoint& a, const SteadyPoint& b) { return a.reduced_volume < b.reduced_volume; });
-    ours_angle.line = own.size() > 2;
-    ours_angle.csv_name = fmt::format("Tanktread, λ = {}", contrasts[k]);
-    render::Curve ours_frequency = ours_angle;
-    ours_frequency.name = fmt::format("λ = {}", contrasts[k]);
-    if (k == 0) {  // a line of the legend alone
-      render::Curve mark;
-      mark.name = "Tanktread";
-      mark.line = false;
-      mark.marker = render::Marker::ring;
-      angle.curves.push_back(mark);
-    }
-    for (const SteadyPoint& p : own) {
-      ours_angle.x.push_back(p.reduced_volume);
-      ours_angle.y.push_back(p.angle);
-      ours_frequency.x.push_back(p.reduced_volume);
-      ours_frequency.y.push_back(p.frequency);
-    }
-    angle.curves.push_back(ours_angle);
-    frequency.curves.push_back(ours_frequency);
-    if (!untold_angle.x.empty()) {
-      untold_angle.csv_name = untold_frequency.csv_name = fmt::format("Tanktread, not settled, λ = {}", contrasts[k]);
-      const bool named = std::any_of(angle.curves.begin(), angle.curves.end(), [](const auto& c) { return c.name == "not settled"; });
-      if (!named) untold_angle.name = "not settled";
-      angle.curves.push_back(untold_angle);
-      frequency.curves.push_back(untold_frequency);
-    }
-    literature(literature_angles(), contrasts[k], k, angle, true);
-    literature(literature_frequencies(), contrasts[k], k, frequency, false);
-  }
-  return {angle, frequency};
+  return {panels.angle, panels.frequency};
 }
 
 }  // namespace app

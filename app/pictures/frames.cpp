@@ -20,27 +20,6 @@ namespace app {
 
 namespace fs = std::filesystem;
 
-std::int64_t frame_count(double end, double time_per_frame) {
-  const double frames = std::floor(end / time_per_frame * (1 + 1e-12)) + 1;
-  if (!(frames <= most_frames + 1))
-    throw std::invalid_argument(fmt::format("{:.3g} frames are too many; movie.time_per_frame must be longer", frames));
-  return static_cast<std::int64_t>(frames);
-}
-
-std::vector<double> frame_times(const sim::TrajectoryReader& trajectory, const render::MovieParameters& movie) {
-  std::vector<double> times;
-  const std::int64_t states = trajectory.count();
-  if (movie.time_per_frame > 0) {
-    const double end = trajectory.time(states - 1);
-    const std::int64_t frames = frame_count(end, movie.time_per_frame);
-    for (std::int64_t f = 0; f < frames; ++f)
-      times.push_back(std::min(end, static_cast<double>(f) * movie.time_per_frame));
-  } else {
-    for (std::int64_t k = 0; k < states; ++k) times.push_back(trajectory.time(k));
-  }
-  return times;
-}
-
 namespace {
 
 constexpr const char* hash_key = "tanktread:hash";
@@ -141,112 +120,148 @@ struct Film {
   }
 };
 
-}  // namespace
+/// What one call of render_frames works on.
+struct Job {
+  const std::vector<PictureSource>& sources;
+  OwnedFiles& files;
+  const Options& options;
+  const Settings& settings;  ///< of the first source
+  const MovieFormat& format;
+  std::string movie;          ///< name of its file
+  Production production = {};
+  std::vector<double> times = {};  ///< of the frames of all shards
+  std::vector<Task> tasks = {};    ///< of this shard
 
-void require_time(double time, double end) {
-  if (time >= 0 && time <= end * (1 + 1e-9)) return;
-  const auto [last, wanted] = sim::told_apart(end, time, 6);
-  throw std::invalid_argument(fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {}", last, wanted));
-}
+  bool whole() const { return options.shards == 1; }
+  fs::path frames() const { return files.folder() / "frames"; }
+};
 
-FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
+/// Throws before anything is changed when a file of the user is in the way.
+Job prepare(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
   const Settings& settings = sources.front().settings;
   const MovieFormat& format = find_movie_format(settings.movie.format);
-  const std::string name = movie_name(format);
-  const fs::path frames = files.folder() / "frames", movie = files.folder() / name;
-  if (options.shards == 1) check_movie(format, settings.view.size[0], settings.view.size[1]);
-  const Production production = prepare_pictures(sources);
-  const std::vector<double> times = frame_times(longest(sources).trajectory, settings.movie);
-  adopt_movie(files, name);
-  if (options.shards == 1) require_pictures(files, settings);
+  Job job{.sources = sources, .files = files, .options = options, .settings = settings, .format = format, .movie = movie_name(format)};
+  if (job.whole()) check_movie(format, settings.view.size[0], settings.view.size[1]);
+  job.production = prepare_pictures(sources);
+  job.times = frame_times(longest(sources).trajectory, settings.movie);
+  adopt_movie(files, job.movie);
+  if (job.whole()) require_pictures(files, settings);
   else files.require_frames(true);
   std::error_code error;
-  fs::create_directories(frames, error);
-  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", frames.string(), error.message()));
-
+  fs::create_directories(job.frames(), error);
+  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", job.frames().string(), error.message()));
   files.clean();
-  FrameReport report;
-  const std::vector<Task> tasks = tasks_of(production, times, files, options);
-  for (const Task& task : tasks) report.kept += task.current;
-  const bool all_kept = report.kept == static_cast<std::int64_t>(tasks.size());
-  // A movie that is there is one of all these frames: it goes before the first of them does.
-  if (!all_kept) remove_movie(files, name);
-  if (all_kept && is_current_movie(files, name, production, times.size(), settings.movie)) report.movie = movie;
-  const bool encode = options.shards == 1 && report.movie.empty();
-  const auto finish_poster = [&] {
-    if (options.shards > 1 || !settings.movie.poster) return;
-    if (const double end = end_of(longest(sources)); *settings.movie.poster <= end * (1 + 1e-9)) {
-      report.poster = write_poster(files, times, *settings.movie.poster);
-    } else {  // the simulation ended before it
-      files.remove(poster_name);
-      const auto [wanted, last] = sim::told_apart(*settings.movie.poster, end);
-      report.poster_remark = fmt::format("there is no poster: it is to show t = {}, and the trajectory ends at t = {}", wanted, last);
+  job.tasks = tasks_of(job.production, job.times, files, options);
+  return job;
+}
+
+void finish_poster(const Job& job, FrameReport& report) {
+  const std::optional<double>& wanted = job.settings.movie.poster;
+  if (!job.whole() || !wanted) return;
+  if (const double end = end_of(longest(job.sources)); *wanted <= end * (1 + 1e-9)) {
+    report.poster = write_poster(job.files, job.times, *wanted);
+  } else {  // the simulation ended before it
+    job.files.remove(poster_name);
+    const auto [time, last] = sim::told_apart(*wanted, end);
+    report.poster_remark = fmt::format("there is no poster: it is to show t = {}, and the trajectory ends at t = {}", time, last);
+  }
+}
+
+void remove_other_frames(const Job& job) {
+  if (job.whole()) job.files.remove_frames(static_cast<std::int64_t>(job.times.size()));
+}
+
+void start(Film& film, const Job& job) {
+  try {
+    film.encoder.emplace(job.format, job.files, job.production.width, job.production.height, job.settings.movie.frame_rate);
+    remove_movie(job.files, job.movie);
+  } catch (const FfmpegMissing& missing) {
+    film.report.remark = missing.what();
+  }
+}
+
+void finish(Film& film, const Job& job) {
+  film.attempt([&] {
+    const fs::path path = job.files.folder() / job.movie;
+    film.encoder->finish();
+    job.files.write(record_of_movie(job.movie), movie_record(job.production, job.times.size(), job.settings.movie, path));
+    film.report.movie = path;
+  });
+}
+
+/// Waits for the frame that is being written, the last of those drawn.
+void await(std::future<void>& writing, const Job& job, const FrameReport& report) {
+  if (!writing.valid()) return;
+  try {
+    writing.get();
+  } catch (const std::exception& failure) {
+    throw std::runtime_error(fmt::format("{}; {} frames are complete in '{}', and the same command continues",
+                                         failure.what(), report.kept + report.drawn - 1, job.frames().string()));
+  }
+}
+
+/// Draws the missing frames of this shard; the film gets all of them in order. Ends early at a signal.
+void draw(const Job& job, Film& film, Progress& progress, FrameReport& report) {
+  std::optional<Studio> studio;
+  std::future<void> writing;  // one picture is compressed while the next is drawn
+  for (std::size_t i = 0; i < job.tasks.size(); ++i) {
+    const Task& task = job.tasks[i];
+    const std::string path = frame_name(task.number);
+    if (interrupted()) {
+      report.interrupted = true;
+      break;
     }
-  };
+    progress.show(static_cast<double>(i) / static_cast<double>(job.tasks.size()),
+                  fmt::format("frame {} of {}", i + 1, job.tasks.size()));
+    if (task.current) {
+      if (film.encoder) film.attempt([&] { film.encoder->add(render::read_png(job.files.folder() / path).image); });
+      continue;
+    }
+    if (!studio) studio.emplace(render::parse_gl_choice(job.options.gl), job.options.shader_dir, job.production.height);
+    const double time = job.times[task.number];
+    auto image = std::make_shared<render::Image>(draw_picture(*studio, job.production, time));
+    film.attempt([&] { film.encoder->add(*image); });
+    await(writing, job, report);
+    // A picture by shaders under work is never taken for a finished one.
+    const std::string hash = job.options.shader_dir.empty() ? hash_of(job.production, time) : "";
+    const render::PngText text = picture_text(job.sources.front(), *studio, time, hash);
+    writing = std::async(std::launch::async, [&files = job.files, image, path, text] {
+      files.write(path, render::png_bytes(*image, text));
+    });
+    ++report.drawn;
+  }
+  await(writing, job, report);
+}
+
+}  // namespace
+
+FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
+  const Job job = prepare(sources, files, options);
+  FrameReport report;
+  for (const Task& task : job.tasks) report.kept += task.current;
+  const bool all_kept = report.kept == static_cast<std::int64_t>(job.tasks.size());
+  // A movie that is there is one of all these frames: it goes before the first of them does.
+  if (!all_kept) remove_movie(files, job.movie);
+  if (all_kept && is_current_movie(files, job.movie, job.production, job.times.size(), job.settings.movie))
+    report.movie = files.folder() / job.movie;
+  const bool encode = job.whole() && report.movie.empty();
   if (all_kept && !encode) {
-    if (options.shards == 1) files.remove_frames(static_cast<std::int64_t>(times.size()));
-    finish_poster();
+    remove_other_frames(job);
+    finish_poster(job, report);
     files.settle();
     return report;
   }
 
   // Software OpenGL has threads of its own; the pictures do not depend on their number.
   if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
-  std::optional<Studio> studio;
   Film film{{}, report};
-  if (encode) {
-    try {
-      film.encoder.emplace(format, files, production.width, production.height, settings.movie.frame_rate);
-      remove_movie(files, name);
-    } catch (const FfmpegMissing& missing) {
-      report.remark = missing.what();
-    }
-  }
-  std::future<void> writing;  // one picture is compressed while the next is drawn
-  const auto written = [&] {
-    if (!writing.valid()) return;
-    try {
-      writing.get();
-    } catch (const std::exception& failure) {
-      throw std::runtime_error(fmt::format("{}; {} frames are complete in '{}', and the same command continues",
-                                           failure.what(), report.kept + report.drawn - 1, frames.string()));
-    }
-  };
+  if (encode) start(film, job);
   Progress progress("rendering", options.quiet);
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const Task& task = tasks[i];
-    const std::string path = frame_name(task.number);
-    if (interrupted()) {
-      report.interrupted = true;
-      break;
-    }
-    progress.show(static_cast<double>(i) / static_cast<double>(tasks.size()),
-                  fmt::format("frame {} of {}", i + 1, tasks.size()));
-    if (task.current) {
-      if (film.encoder) film.attempt([&] { film.encoder->add(render::read_png(files.folder() / path).image); });
-      continue;
-    }
-    if (!studio) studio.emplace(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
-    auto image = std::make_shared<render::Image>(draw_picture(*studio, production, times[task.number]));
-    film.attempt([&] { film.encoder->add(*image); });
-    written();
-    // A picture by shaders under work is never taken for a finished one.
-    const std::string hash = options.shader_dir.empty() ? hash_of(production, times[task.number]) : "";
-    const render::PngText text = picture_text(sources.front(), *studio, times[task.number], hash);
-    writing = std::async(std::launch::async, [&files, image, path, text] {
-      files.write(path, render::png_bytes(*image, text));
-    });
-    ++report.drawn;
-  }
-  written();
+  draw(job, film, progress, report);
   if (report.interrupted) return report;
-  if (options.shards == 1) files.remove_frames(static_cast<std::int64_t>(times.size()));
-  film.attempt([&] {
-    film.encoder->finish();
-    files.write(record_of_movie(name), movie_record(production, times.size(), settings.movie, movie));
-    report.movie = movie;
-  });
-  finish_poster();
+  remove_other_frames(job);
+  finish(film, job);
+  finish_poster(job, report);
   files.settle();
   return report;
 }

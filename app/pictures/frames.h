@@ -7,15 +7,6 @@
 
 namespace app {
 
-/// Frames from time 0 to `end`. Throws std::invalid_argument when there are more than most_frames.
-std::int64_t frame_count(double end, double time_per_frame);
-
-/// Instants of the frames: those of the saved states, or every movie.time_per_frame.
-std::vector<double> frame_times(const sim::TrajectoryReader&, const render::MovieParameters&);
-
-/// Throws std::invalid_argument with a sentence for a time outside 0 to `end`, or NaN.
-void require_time(double time, double end);
-
 struct FrameReport {
   std::int64_t drawn = 0;  ///< now
   std::int64_t kept = 0;   ///< complete already, from an earlier run of the same scene, view and program

@@ -201,4 +201,23 @@ sim::Coefficients painted_field(sim::Plans& plans, const Painting& p, const Sett
   return field;
 }
 
+void share_legend(const std::vector<Painting*>& paintings, bool given) {
+  for (const Painting* p : paintings)
+    if (!p->legend || !p->field || p->field != paintings.front()->field) return;
+  const auto mirrored = std::find_if(paintings.begin(), paintings.end(), [](const Painting* p) { return p->legend->mirrored; });
+  render::Legend all = *(mirrored != paintings.end() ? *mirrored : paintings.front())->legend;
+  for (const Painting* p : paintings) {
+    all.low = std::min(all.low, p->legend->low);
+    all.high = std::max(all.high, p->legend->high);
+    all.below = all.below || p->legend->below;
+    all.above = all.above || p->legend->above;
+  }
+  if (all.mirrored && !given) {
+    all.high = std::max(std::abs(all.low), std::abs(all.high));
+    all.low = -all.high;
+  }
+  all.mirrored = all.mirrored && all.low == -all.high;
+  for (Painting* p : paintings) p->legend = all;
+}
+
 }  // namespace app

@@ -39,86 +39,113 @@ void draw_configuration(const render::Pen& pen, double x, double y, double unit)
   render::draw_text(cairo, pen.font, pen.theme.text, x + 6, y + 0.36 * pen.theme.text, "gap");
 }
 
+/// What the figure and the table show.
+struct Errors {
+  std::vector<double> gaps, contrasts;      ///< lengths in R_0; viscosity contrasts
+  std::vector<std::vector<double>> values;  ///< contrast, gap: relative error of one block iteration
+  double lagged = 0;                        ///< largest with the double layer of the velocities before
+};
+
+/// Relative, of the coefficients of position and tension.
+double difference(const sim::Advance& is, const sim::Advance& should) {
+  double difference = 0, size = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const sim::Moved &a = is.vesicles[k], &b = should.vesicles[k];
+    difference += (a.position.values - b.position.values).squaredNorm() +
+                  (a.motion.tension.values - b.motion.tension.values).squaredNorm();
+    size += b.position.values.squaredNorm() + b.motion.tension.values.squaredNorm();
+  }
+  return std::sqrt(difference / size);
+}
+
+/// Adds the errors of one gap and contrast.
+void measure(Errors& errors, sim::Plans& plans, int p, double gap, std::size_t contrast) {
+  const double half = sim::spheroid_axes(0.85, true)[1];
+  sim::Scene scene = sheared_pair(p, errors.contrasts[contrast]);
+  scene.vesicles[0].center = {0, 0, half + gap / 2};
+  scene.vesicles[1].center = {0, 0, -half - gap / 2};
+  scene.numerics.gmres_tolerance = 1e-11;
+  const sim::Model model = sim::make_model(scene, plans);
+  sim::Dynamics d = sim::initial_dynamics(model);
+  const sim::State now = sim::evaluate(model, d).value();
+  for (std::size_t k = 0; k < 2; ++k) d.vesicles[k].motion = {now.vesicles[k].velocity, now.vesicles[k].tension};
+  const auto advance = [&](const char* scheme) {
+    return sim::find_row(sim::scheme_catalogue(), scheme)->function.advance({model, d, paper_step, scene.flows}).value();
+  };
+  const sim::Advance exact = advance("globally-implicit");
+  errors.lagged = std::max(errors.lagged, difference(advance("block-implicit"), exact));
+  for (sim::VesicleDynamics& v : d.vesicles) v.motion.velocity.values.setZero();
+  errors.values[contrast].push_back(difference(advance("block-implicit"), exact));
+}
+
+Errors measured_errors(int p, const Effort& effort) {
+  Errors errors;
+  errors.gaps = effort.quick ? std::vector<double>{0.1, 1}
+                             : std::vector<double>{0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.28, 2.5, 5, 10};
+  errors.contrasts = effort.quick ? std::vector<double>{10} : std::vector<double>{1, 4, 10};
+  errors.values.resize(errors.contrasts.size());
+  sim::Plans plans;
+  for (std::size_t k = 0; k < errors.gaps.size(); ++k)
+    for (std::size_t c = 0; c < errors.contrasts.size(); ++c) {
+      stop_if_interrupted();
+      effort.progress.show(static_cast<double>(k) / static_cast<double>(errors.gaps.size()),
+                           fmt::format("gap {:g}, λ = {}", errors.gaps[k], errors.contrasts[c]));
+      measure(errors, plans, p, errors.gaps[k], c);
+    }
+  return errors;
+}
+
+TextTable table_of(const Errors& errors) {
+  TextTable table{.caption = "Relative error ‖y⁺ − y*‖/‖y*‖ of the coefficients.", .columns = {"gap / R_0"}, .rows = {}};
+  for (const double contrast : errors.contrasts) table.columns.push_back(fmt::format("λ = {}", contrast));
+  for (std::size_t k = 0; k < errors.gaps.size(); ++k) {
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    cells.push_back(fmt::format("{:g}", errors.gaps[k]));
+    for (const std::vector<double>& of_contrast : errors.values) cells.push_back(scientific(of_contrast[k], 3));
+  }
+  return table;
+}
+
+void draw(const render::Pen& pen, const Errors& errors) {
+  std::vector<double> all;
+  for (const std::vector<double>& of_contrast : errors.values) all.insert(all.end(), of_contrast.begin(), of_contrast.end());
+  const render::Panel panel{
+      .x = render::decades(errors.gaps), .y = render::decades(all), .left = 66, .top = 16, .width = 276, .height = 232};
+  std::vector<render::LegendEntry> legend;
+  for (std::size_t c = 0; c < errors.values.size(); ++c) {
+    const auto x = render::logarithms(errors.gaps), y = render::logarithms(errors.values[c]);
+    render::draw_polyline(pen, panel, x, y, {render::curve_colour(c)});
+    render::draw_markers(pen, panel, x, y, render::Marker::dot, render::curve_colour(c), 1.5);
+    legend.push_back({fmt::format("λ = {}", errors.contrasts[c]), render::curve_colour(c), {}, false});
+  }
+  const render::Axes axes{.x = {.label = "gap / R_{0}", .scale = render::Scale::logarithmic},
+                          .y = {.label = "relative error", .scale = render::Scale::logarithmic}};
+  render::draw_axes(pen, panel, axes);
+  render::draw_legend(pen, panel, legend, render::Corner::lower_left);
+  draw_configuration(pen, panel.left + panel.width - 40, panel.top + 34, 14);
+}
+
 }  // namespace
 
 Report reproduce_block_error(const Effort& effort) {
   const int p = effort.quick ? 6 : 12;
-  const std::vector<double> gaps = effort.quick ? std::vector<double>{0.1, 1}
-                                                : std::vector<double>{0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.28, 2.5, 5, 10};
-  const std::vector<double> contrasts = effort.quick ? std::vector<double>{10} : std::vector<double>{1, 4, 10};
+  const Errors errors = measured_errors(p, effort);
+  const TextTable table = table_of(errors);
   Report report;
   report.title = "Figure 5: one block iteration against distance";
   report.setting = {"Two prolates, ν = 0.85, area 4π, long axes along x, one above the other along z (the paper's configuration is "
                     "only pictured), in the shear flow u = z e_x, κ_b = 0.01, γ̇Δt = 0.21.",
                     fmt::format("p = {}. y = (x, σ): y* solves the coupled system (40) to 1e-11, y⁺ is one block Jacobi iteration "
                                 "from the present x_n, at rest, and the tension that solves (3) there.", p)};
-  TextTable table{"Relative error ‖y⁺ − y*‖/‖y*‖ of the coefficients.", {"gap / R_0"}, {}};
-  for (const double contrast : contrasts) table.columns.push_back(fmt::format("λ = {}", contrast));
-  sim::Plans plans;
-  std::vector<std::vector<double>> errors(contrasts.size());
-  double lagged = 0;
-  const double half = sim::spheroid_axes(0.85, true)[1];
-  for (const double gap : gaps) {
-    std::vector<std::string> cells{fmt::format("{:g}", gap)};
-    for (std::size_t c = 0; c < contrasts.size(); ++c) {
-      stop_if_interrupted();
-      effort.progress.show(static_cast<double>(&gap - gaps.data()) / static_cast<double>(gaps.size()),
-                           fmt::format("gap {:g}, λ = {}", gap, contrasts[c]));
-      sim::Scene scene = sheared_pair(p, contrasts[c]);
-      scene.vesicles[0].center = {0, 0, half + gap / 2};
-      scene.vesicles[1].center = {0, 0, -half - gap / 2};
-      scene.numerics.gmres_tolerance = 1e-11;
-      const sim::Model model = sim::make_model(scene, plans);
-      sim::Dynamics d = sim::initial_dynamics(model);
-      const sim::State now = sim::evaluate(model, d).value();
-      for (std::size_t k = 0; k < 2; ++k) d.vesicles[k].motion = {now.vesicles[k].velocity, now.vesicles[k].tension};
-      const auto advance = [&](const char* scheme) {
-        return sim::find_row(sim::scheme_catalogue(), scheme)->function.advance({model, d, paper_step, scene.flows}).value();
-      };
-      const sim::Advance exact = advance("globally-implicit");
-      const auto error_of = [&](const sim::Advance& block) {
-        double difference = 0, size = 0;
-        for (std::size_t k = 0; k < 2; ++k) {
-          const sim::Moved &is = block.vesicles[k], &should = exact.vesicles[k];
-          difference += (is.position.values - should.position.values).squaredNorm() +
-                        (is.motion.tension.values - should.motion.tension.values).squaredNorm();
-          size += should.position.values.squaredNorm() + should.motion.tension.values.squaredNorm();
-        }
-        return std::sqrt(difference / size);
-      };
-      lagged = std::max(lagged, error_of(advance("block-implicit")));
-      for (sim::VesicleDynamics& v : d.vesicles) v.motion.velocity.values.setZero();
-      errors[c].push_back(error_of(advance("block-implicit")));
-      cells.push_back(scientific(errors[c].back(), 3));
-    }
-    table.rows.push_back(cells);
-  }
-  report.tables.push_back(table);
-  report.findings.push_back(fmt::format("With the double layer of the velocities that solve (3) there, as our block-implicit scheme "
-                                        "takes it from the step before, no error above is larger than {}.", scientific(lagged)));
-
-  std::vector<double> all;
-  for (const auto& e : errors) all.insert(all.end(), e.begin(), e.end());
-  render::Figure figure;
+  report.tables = {table};
+  report.findings = {fmt::format("With the double layer of the velocities that solve (3) there, as our block-implicit scheme "
+                                 "takes it from the step before, no error above is larger than {}.", scientific(errors.lagged))};
+  render::Figure& figure = report.figure.emplace();
   figure.csv = csv_text(table);
-  figure.drawing = {360, 300, [=](cairo_t* cairo, const render::Font& font) {
+  figure.drawing = {.width = 360, .height = 300, .paint = [errors](cairo_t* cairo, const render::Font& font) {
                       const render::Theme theme = render::find_theme("paper");
-                      const render::Pen pen{cairo, font, theme};
-                      const render::Panel panel{render::decades(gaps), render::decades(all), 66, 16, 276, 232};
-                      std::vector<render::LegendEntry> legend;
-                      for (std::size_t c = 0; c < errors.size(); ++c) {
-                        const auto x = render::logarithms(gaps), y = render::logarithms(errors[c]);
-                        render::draw_polyline(pen, panel, x, y, {render::curve_colour(c)});
-                        render::draw_markers(pen, panel, x, y, render::Marker::dot, render::curve_colour(c), 1.5);
-                        legend.push_back({fmt::format("λ = {}", contrasts[c]), render::curve_colour(c), {}, false});
-                      }
-                      const render::Axes axes{{"gap / R_{0}", render::Scale::logarithmic, true, false},
-                                              {"relative error", render::Scale::logarithmic, true, false}, 0};
-                      render::draw_axes(pen, panel, axes);
-                      render::draw_legend(pen, panel, legend, render::Corner::lower_left);
-                      draw_configuration(pen, panel.left + panel.width - 40, panel.top + 34, 14);
+                      draw({cairo, font, theme}, errors);
                     }};
-  report.figure = std::move(figure);
   report.picture_text = "Relative error of (x⁺, σ⁺) after one block Jacobi iteration against the gap of two vesicles.";
   return report;
 }

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -105,10 +106,21 @@ Report reproduce_aliasing(const Effort&) {
   return report;
 }
 
-Report reproduce_spectra(const Effort& effort) {
-  const int p = effort.quick ? 8 : 16, q = effort.quick ? 24 : 64;
-  const double end = effort.quick ? 0.2 : 4;
-  // A shape that fills its band: a biconcave disc after some time in Poiseuille flow.
+namespace {
+
+constexpr double least_shown = 1e-12;  // degrees that a symmetry empties are smaller
+
+/// A shape and the norms of its coefficients by degree n; NaN beyond its order.
+struct Spectra {
+  int order = 0, fine = 0;              ///< highest degrees of the position, and of the grid for its mean curvature
+  sim::Coefficients shape;
+  std::vector<double> of_x, of_h;
+  std::vector<double> of_folded;        ///< of the mean curvature from the grid of the position's own order
+  double in_band = 0;                   ///< relative error of that mean curvature in the degrees of the position
+};
+
+/// A shape that fills its band: a biconcave disc after some time in Poiseuille flow.
+sim::Coefficients full_shape(sim::Plans& plans, int order, double end, const Effort& effort) {
   sim::Scene scene;
   sim::FlowParameters flow;
   flow.kind = "poiseuille";
@@ -117,9 +129,8 @@ Report reproduce_spectra(const Effort& effort) {
   sim::VesicleParameters vesicle;
   vesicle.shape = "biconcave";
   vesicle.reduced_volume = 0.65;
-  vesicle.order = p;
+  vesicle.order = order;
   scene.vesicles = {vesicle};
-  sim::Plans plans;
   const sim::Model model = sim::make_model(scene, plans);
   sim::Dynamics dynamics = sim::initial_dynamics(model);
   while (dynamics.time < end * (1 - 1e-9)) {
@@ -127,73 +138,103 @@ Report reproduce_spectra(const Effort& effort) {
     effort.progress.show(dynamics.time / end, "the shape");
     dynamics = sim::take_step(model, dynamics, 0.05).value().dynamics;
   }
-  sim::Coefficients x = dynamics.vesicles[0].position;
-  const sim::Coefficients fine = sim::resized(x, q), h = sim::mean_curvature(plans, fine, q);
+  return dynamics.vesicles[0].position;
+}
+
+Spectra spectra_of(sim::Plans& plans, const sim::Coefficients& x, int fine) {
+  const int p = x.order;
+  const sim::Coefficients h = sim::mean_curvature(plans, sim::resized(x, fine), fine);
   // The same from the p-grid alone: everything above p is folded back.
   const sim::Coefficients folded = sim::mean_curvature(plans, x, p);
-  TextTable table{"", {"n", "E_n(x)", "E_n(H)", "E_n(H) from the p-grid"}, {}};
-  std::vector<double> degrees, of_x, of_h, of_folded;
-  for (int n = 0; n <= q; ++n) {
-    degrees.push_back(n);
-    of_x.push_back(n <= p ? sim::modular_norm(x, n) : std::nan(""));
-    of_h.push_back(sim::modular_norm(h, n));
-    of_folded.push_back(n <= p ? sim::modular_norm(folded, n) : std::nan(""));
-    table.rows.push_back({std::to_string(n), scientific(of_x.back(), 6), scientific(of_h.back(), 6), scientific(of_folded.back(), 6)});
+  Spectra s;
+  s.order = p;
+  s.fine = fine;
+  s.shape = x;
+  for (int n = 0; n <= fine; ++n) {
+    s.of_x.push_back(n <= p ? sim::modular_norm(x, n) : std::nan(""));
+    s.of_h.push_back(sim::modular_norm(h, n));
+    s.of_folded.push_back(n <= p ? sim::modular_norm(folded, n) : std::nan(""));
   }
+  s.in_band = (folded.values - sim::resized(h, p).values).norm() / sim::resized(h, p).values.norm();
+  return s;
+}
+
+TextTable table_of(const Spectra& s) {
+  TextTable table{.caption = "", .columns = {"n", "E_n(x)", "E_n(H)", "E_n(H) from the p-grid"}, .rows = {}};
+  for (std::size_t n = 0; n < s.of_h.size(); ++n)
+    table.rows.push_back({std::to_string(n), scientific(s.of_x[n], 6), scientific(s.of_h[n], 6), scientific(s.of_folded[n], 6)});
+  return table;
+}
+
+TextTable every_eighth(const TextTable& table) {
+  TextTable excerpt{.caption = "Every eighth degree.", .columns = table.columns, .rows = {}};
+  for (std::size_t n = 0; n < table.rows.size(); n += 8) excerpt.rows.push_back(table.rows[n]);
+  return excerpt;
+}
+
+void draw_spectrum(const render::Pen& pen, const render::Panel& panel, const std::vector<double>& norms, std::size_t colour) {
+  std::vector<double> n, y;
+  for (std::size_t k = 0; k < norms.size(); ++k)
+    if (norms[k] > least_shown) {
+      n.push_back(static_cast<double>(k));
+      y.push_back(std::log10(norms[k]));
+    }
+  render::draw_polyline(pen, panel, n, y, {render::curve_colour(colour), 0.75});
+  render::draw_markers(pen, panel, n, y, render::Marker::dot, render::curve_colour(colour), 1.25);
+}
+
+void draw_spectra(const render::Pen& pen, const Spectra& s, const std::vector<render::ClosedCurve>& section) {
+  std::vector<double> all = s.of_h;
+  for (const double v : s.of_x)
+    if (v > least_shown) all.push_back(v);
+  for (double& v : all) v = std::max(v, least_shown);
+  const render::Panel panel{
+      .x = {0, static_cast<double>(s.fine)}, .y = render::decades(all), .left = 66, .top = 16, .width = 318, .height = 232};
+  draw_spectrum(pen, panel, s.of_h, 1);
+  draw_spectrum(pen, panel, s.of_x, 0);
+  render::draw_axes(pen, panel, {.x = {.label = "degree n"}, .y = {.label = "E_{n}", .scale = render::Scale::logarithmic}});
+  // The section of the shape, in the upper right.
+  const render::Panel inset{.x = {-1.7, 1.7},
+                            .y = {-1.7, 1.7},
+                            .left = panel.left + panel.width - 92,
+                            .top = panel.top + 8,
+                            .width = 84,
+                            .height = 84};
+  for (const render::ClosedCurve& curve : section) {
+    const Eigen::Vector2d middle = 0.5 * (curve.points.colwise().maxCoeff() + curve.points.colwise().minCoeff()).transpose();
+    render::draw_closed_curve(pen, inset, curve, -middle, {{0.25, 0.28, 0.33}, 0.75}, 0.12);
+  }
+  render::draw_legend(
+      pen, panel,
+      {{"position x", render::curve_colour(0), {}, false}, {"mean curvature H", render::curve_colour(1), {}, false}},
+      render::Corner::lower_left);
+}
+
+}  // namespace
+
+Report reproduce_spectra(const Effort& effort) {
+  const int p = effort.quick ? 8 : 16, q = effort.quick ? 24 : 64;
+  const double end = effort.quick ? 0.2 : 4;
+  sim::Plans plans;
+  const Spectra spectra = spectra_of(plans, full_shape(plans, p, end, effort), q);
+  const TextTable table = table_of(spectra);
   Report report;
   report.title = "Figure 3: spectra of position and mean curvature";
   report.setting = {fmt::format("The paper's shape is only pictured; ours is a biconcave disc, ν = 0.65, p = {}, κ_b = 0.01, λ = 1, after "
                                 "t = {} in the Poiseuille flow u_x = −0.1 (y² + z²) (bdf2, Δt = 0.05).", p, end),
                     fmt::format("E_n of Eq. (18): norm of the coefficients of degree n; H computed on the {}-grid.", q)};
-  const double in_band = (folded.values - sim::resized(h, p).values).norm() / sim::resized(h, p).values.norm();
+  const std::vector<double>& of_h = spectra.of_h;
   report.findings = {fmt::format("x ends at n = {}; at n = {} H has still {} of its largest E_n. Taken from the {}-grid alone, H "
                                  "is wrong by {} in its coefficients n ≤ {}.", p, q, scientific(of_h.back() / *std::max_element(of_h.begin(), of_h.end())),
-                                 p, scientific(in_band), p)};
-  render::Figure figure;
+                                 p, scientific(spectra.in_band), p)};
+  report.tables.push_back(every_eighth(table));
+  const std::vector<render::ClosedCurve> section = render::cut(spectra.shape, {});
+  render::Figure& figure = report.figure.emplace();
   figure.csv = csv_text(table);
-  std::vector<double> all = of_h;
-  for (const double v : of_x)
-    if (v > 1e-12) all.push_back(v);
-  for (double& v : of_x)
-    if (v < 1e-12) v = std::nan("");  // odd or even degrees that symmetry empties
-  for (double& v : all) v = std::max(v, 1e-12);
-  const auto curves = render::cut(x, {.origin = render::CutPlane().origin});
-  figure.drawing = {400, 300, [=](cairo_t* cairo, const render::Font& font) {
+  figure.drawing = {.width = 400, .height = 300, .paint = [spectra, section](cairo_t* cairo, const render::Font& font) {
                       const render::Theme theme = render::find_theme("paper");
-                      const render::Pen pen{cairo, font, theme};
-                      const render::Panel panel{{0, static_cast<double>(q)}, render::decades(all), 66, 16, 318, 232};
-                      const auto show = [&](const std::vector<double>& values, std::size_t c) {
-                        std::vector<double> n, y;
-                        for (std::size_t k = 0; k < values.size(); ++k)
-                          if (values[k] > 1e-12) {
-                            n.push_back(degrees[k]);
-                            y.push_back(std::log10(values[k]));
-                          }
-                        render::draw_polyline(pen, panel, n, y, {render::curve_colour(c), 0.75});
-                        render::draw_markers(pen, panel, n, y, render::Marker::dot, render::curve_colour(c), 1.25);
-                      };
-                      show(of_h, 1);
-                      show(of_x, 0);
-                      render::Axes axes;
-                      axes.x.label = "degree n";
-                      axes.y.label = "E_{n}";
-                      axes.y.scale = render::Scale::logarithmic;
-                      render::draw_axes(pen, panel, axes);
-                      // The section of the shape, in the upper right.
-                      render::Panel inset{{-1.7, 1.7}, {-1.7, 1.7}, panel.left + panel.width - 92, panel.top + 8, 84, 84};
-                      for (const render::ClosedCurve& curve : curves) {
-                        const Eigen::Vector2d middle = 0.5 * (curve.points.colwise().maxCoeff() + curve.points.colwise().minCoeff()).transpose();
-                        render::draw_closed_curve(pen, inset, curve, -middle, {{0.25, 0.28, 0.33}, 0.75}, 0.12);
-                      }
-                      render::draw_legend(pen, panel,
-                                          {{"position x", render::curve_colour(0), {}, false},
-                                           {"mean curvature H", render::curve_colour(1), {}, false}},
-                                          render::Corner::lower_left);
+                      draw_spectra({cairo, font, theme}, spectra, section);
                     }};
-  TextTable excerpt{"Every eighth degree.", table.columns, {}};
-  for (std::size_t n = 0; n < table.rows.size(); n += 8) excerpt.rows.push_back(table.rows[n]);
-  report.tables.push_back(excerpt);
-  report.figure = std::move(figure);
   report.picture_text = "Modular norms of position and mean curvature, and the section of the shape.";
   return report;
 }

@@ -112,31 +112,137 @@ std::vector<std::string> order_columns(const std::vector<int>& orders, std::vect
 
 constexpr const char* pair_text = "Two vesicles: two such prolates, λ = 10, centres ∓(1.2, 0, −0.5).";
 
+/// A row of the first table: a scheme at one viscosity contrast.
+struct SchemeRow {
+  const char* scheme;
+  double contrast;
+  Ladder ladder;
+  bool correction;     ///< of area and volume
+  const char* paper;   ///< its steps
+  double modulus = 0.01;
+
+  bool slow() const { return std::string_view(scheme) == "explicit" || std::string_view(scheme) == "block-jacobi"; }
+};
+
+std::vector<SchemeRow> scheme_rows(const Effort& effort) {
+  if (effort.quick) return {{"explicit", 1, {0, 2}, false, "2.7e-2 at p = 8"}, {"globally-implicit", 10, {0, 0}, true, "2.1e-1"}};
+  return {{"explicit", 1, {-4, 20}, false, "2.7e-2, 6.7e-3, 1.7e-3, 8.4e-4, 2.1e-4"},
+          {"explicit", 1, {-4, 20}, false, "", 0.1},
+          {"block-jacobi", 1, {-4, 10}, true, "5.4e-2"},
+          {"block-jacobi", 4, {-4, 10}, true, ""},
+          {"block-jacobi", 10, {-4, 10}, true, ""},
+          {"globally-implicit", 1, {-2, 4}, true, "2.1e-1"},
+          {"globally-implicit", 4, {-2, 4}, true, "2.1e-1"},
+          {"globally-implicit", 10, {-2, 4}, true, "2.1e-1"},
+          {"bdf2", 1, {-2, 4}, true, ""},
+          {"bdf2", 4, {-2, 4}, true, ""},
+          {"bdf2", 10, {-2, 4}, true, ""}};
+}
+
+/// Logarithms of orders and of their stable steps.
+struct Fit {
+  std::vector<double> log_p, log_step;
+};
+
+std::string fit_text(const Fit& fit, double modulus) {
+  const Fit last{.log_p = {fit.log_p.end() - 2, fit.log_p.end()}, .log_step = {fit.log_step.end() - 2, fit.log_step.end()}};
+  return fmt::format("Explicit, κ_b = {}: a fit of Δt ~ p^-a gives a = {:.2f}, between the two highest orders "
+                     "{:.2f}; the paper's five values give 3.5.",
+                     modulus, -fitted_slope(fit.log_p, fit.log_step), -fitted_slope(last.log_p, last.log_step));
+}
+
+/// The tables of one vesicle.
+struct StepTables {
+  TextTable stable, errors, stops;
+};
+
+StepTables empty_tables(const std::vector<int>& orders) {
+  StepTables tables;
+  tables.stable = {.caption = "Largest stable γ̇Δt on the ladder; ≥: larger steps were not tried, <: none so large is stable.",
+                   .columns = order_columns(orders, {"scheme", "λ", "κ_b"}),
+                   .rows = {}};
+  tables.stable.columns.emplace_back("paper (p = 8, 12, 16, 24, 32)");
+  tables.errors = {.caption = "Relative error of the area at T with that step and no correction; 'stops' where the run then stops.",
+                   .columns = order_columns(orders, {"scheme", "λ", "κ_b"}),
+                   .rows = {}};
+  tables.stops = {.caption = "Why the next larger step stops.", .columns = {"scheme", "λ", "κ_b", "p", "at"}, .rows = {}};
+  return tables;
+}
+
+sim::Scene scene_of(const SchemeRow& row, int p, double end) {
+  sim::Scene scene = sheared_prolate(p, row.contrast);
+  scene.time.scheme = row.scheme;
+  scene.time.end = end;
+  scene.vesicles[0].bending_modulus = row.modulus;
+  scene.numerics.gmres_tolerance = 1e-8;
+  scene.numerics.correction = row.correction;
+  return scene;
+}
+
+/// Adds a row to each table. Runs without correction go into the fit.
+Fit add_row(StepTables& tables, const SchemeRow& row, sim::Plans& plans, double end, const Effort& effort) {
+  std::vector<std::string> cells{row.scheme, fmt::format("{}", row.contrast), fmt::format("{}", row.modulus)}, error_cells = cells;
+  Ladder ladder = row.ladder;
+  Fit fit;
+  for (const int p : table_orders(effort)) {
+    if (p > 16 && row.slow()) {  // hours
+      cells.push_back("not run");
+      error_cells.push_back("-");
+      continue;
+    }
+    sim::Scene scene = scene_of(row, p, end);
+    const std::string what = fmt::format("{}, λ = {}, p = {}", row.scheme, row.contrast, p);
+    const StableStep found = stable_step(scene, plans, ladder, end, effort, what);
+    cells.push_back(cell_of(found));
+    if (!found.reason.empty()) tables.stops.rows.push_back({cells[0], cells[1], cells[2], std::to_string(p), found.reason});
+    if (!std::isfinite(found.step)) {
+      error_cells.push_back("-");
+      continue;
+    }
+    FixedRun bare = found.run;
+    if (row.correction) {
+      scene.numerics.correction = false;
+      bare = run_fixed(scene, plans, found.step, end);
+    } else {
+      fit.log_p.push_back(std::log(p));
+      fit.log_step.push_back(std::log(found.step));
+      ladder.first = std::max(row.ladder.first, static_cast<int>(std::lround(2 * std::log2(paper_step / found.step))) - 1);
+    }
+    error_cells.push_back(bare.stable ? scientific(bare.area_error) : fmt::format("stops at t = {:.2g}", bare.time));
+  }
+  cells.push_back(row.paper);
+  tables.stable.rows.push_back(cells);
+  tables.errors.rows.push_back(error_cells);
+  return fit;
+}
+
+TextTable pair_table(sim::Plans& plans, double end, const Effort& effort) {
+  struct PairRow {
+    const char *scheme, *paper;
+  };
+  constexpr PairRow rows[] = {{"block-jacobi", "none"}, {"block-implicit", "none"}, {"globally-implicit", "2.1e-1"}, {"bdf2", ""}};
+  const std::vector<int> orders = effort.quick ? std::vector<int>{6} : effort.full ? std::vector<int>{8, 16} : std::vector<int>{8};
+  const Ladder ladder = effort.quick ? Ladder{0, 0} : Ladder{-2, 4};
+  TextTable table{.caption = "Two vesicles, λ = 10.",
+                  .columns = {"scheme", "p", "stable γ̇Δt", "smallest gap", "the next larger step stops", "paper"},
+                  .rows = {}};
+  for (const PairRow& row : rows)
+    for (const int p : orders) {
+      if (effort.quick && std::string_view(row.scheme) != "bdf2") continue;
+      sim::Scene scene = sheared_pair(p, 10);
+      scene.time.scheme = row.scheme;
+      scene.numerics.gmres_tolerance = 1e-8;
+      const StableStep found = stable_step(scene, plans, ladder, end, effort, fmt::format("two vesicles, {}, p = {}", row.scheme, p));
+      table.rows.push_back({row.scheme, std::to_string(p), cell_of(found),
+                            found.run.stable ? fmt::format("{:.3f}", found.run.gap) : "-",
+                            found.reason.empty() ? "-" : found.reason, row.paper});
+    }
+  return table;
+}
+
 }  // namespace
 
 Report reproduce_stable_steps(const Effort& effort) {
-  struct Row {
-    const char* scheme;
-    double contrast;
-    Ladder ladder;
-    bool correction;
-    const char* paper;
-    double modulus = 0.01;
-  };
-  const std::vector<Row> rows = effort.quick ? std::vector<Row>{{"explicit", 1, {0, 2}, false, "2.7e-2 at p = 8"},
-                                                                {"globally-implicit", 10, {0, 0}, true, "2.1e-1"}}
-                                             : std::vector<Row>{{"explicit", 1, {-4, 20}, false, "2.7e-2, 6.7e-3, 1.7e-3, 8.4e-4, 2.1e-4"},
-                                                                {"explicit", 1, {-4, 20}, false, "", 0.1},
-                                                                {"block-jacobi", 1, {-4, 10}, true, "5.4e-2"},
-                                                                {"block-jacobi", 4, {-4, 10}, true, ""},
-                                                                {"block-jacobi", 10, {-4, 10}, true, ""},
-                                                                {"globally-implicit", 1, {-2, 4}, true, "2.1e-1"},
-                                                                {"globally-implicit", 4, {-2, 4}, true, "2.1e-1"},
-                                                                {"globally-implicit", 10, {-2, 4}, true, "2.1e-1"},
-                                                                {"bdf2", 1, {-2, 4}, true, ""},
-                                                                {"bdf2", 4, {-2, 4}, true, ""},
-                                                                {"bdf2", 10, {-2, 4}, true, ""}};
-  const std::vector<int> orders = table_orders(effort);
   const double end = effort.quick ? 1 : 10;
   sim::Plans plans;
   Report report;
@@ -146,81 +252,14 @@ Report reproduce_stable_steps(const Effort& effort) {
                                 "step, gap, area correction). Steps are 0.21 times powers of √2, from the largest downward.", end),
                     "Linear solves to 1e-8, aliasing tolerance 1e-4, reparametrization when due. Area and volume correction off "
                     "for the explicit scheme, as in the paper, on for the others; its effect is the second table."};
-  TextTable stable{"Largest stable γ̇Δt on the ladder; ≥: larger steps were not tried, <: none so large is stable.",
-                   order_columns(orders, {"scheme", "λ", "κ_b"}), {}};
-  stable.columns.push_back("paper (p = 8, 12, 16, 24, 32)");
-  TextTable errors{"Relative error of the area at T with that step and no correction; 'stops' where the run then stops.",
-                   order_columns(orders, {"scheme", "λ", "κ_b"}), {}};
-  TextTable stops{"Why the next larger step stops.", {"scheme", "λ", "κ_b", "p", "at"}, {}};
-  for (const Row& row : rows) {
-    std::vector<std::string> cells{row.scheme, fmt::format("{}", row.contrast), fmt::format("{}", row.modulus)},
-        error_cells = cells;
-    Ladder ladder = row.ladder;
-    std::vector<double> log_p, log_step;
-    for (const int p : orders) {
-      if (p > 16 && (std::string_view(row.scheme) == "explicit" || std::string_view(row.scheme) == "block-jacobi")) {  // hours
-        cells.push_back("not run");
-        error_cells.push_back("-");
-        continue;
-      }
-      sim::Scene scene = sheared_prolate(p, row.contrast);
-      scene.time.scheme = row.scheme;
-      scene.time.end = end;
-      scene.vesicles[0].bending_modulus = row.modulus;
-      scene.numerics.gmres_tolerance = 1e-8;
-      scene.numerics.correction = row.correction;
-      const std::string what = fmt::format("{}, λ = {}, p = {}", row.scheme, row.contrast, p);
-      const StableStep found = stable_step(scene, plans, ladder, end, effort, what);
-      cells.push_back(cell_of(found));
-      if (!found.reason.empty())
-        stops.rows.push_back({row.scheme, fmt::format("{}", row.contrast), fmt::format("{}", row.modulus), std::to_string(p), found.reason});
-      if (!std::isfinite(found.step)) {
-        error_cells.push_back("-");
-        continue;
-      }
-      FixedRun bare = found.run;
-      if (row.correction) {
-        scene.numerics.correction = false;
-        bare = run_fixed(scene, plans, found.step, end);
-      } else {
-        log_p.push_back(std::log(p));
-        log_step.push_back(std::log(found.step));
-        ladder.first = std::max(row.ladder.first, static_cast<int>(std::lround(2 * std::log2(paper_step / found.step))) - 1);
-      }
-      error_cells.push_back(bare.stable ? scientific(bare.area_error) : fmt::format("stops at t = {:.2g}", bare.time));
-    }
-    if (log_p.size() > 1)
-      report.findings.push_back(fmt::format("Explicit, κ_b = {}: a fit of Δt ~ p^-a gives a = {:.2f}, between the two highest orders "
-                                            "{:.2f}; the paper's five values give 3.5.",
-                                            row.modulus, -fitted_slope(log_p, log_step),
-                                            -fitted_slope({log_p.end() - 2, log_p.end()}, {log_step.end() - 2, log_step.end()})));
-    cells.push_back(row.paper);
-    stable.rows.push_back(cells);
-    errors.rows.push_back(error_cells);
+  StepTables tables = empty_tables(table_orders(effort));
+  for (const SchemeRow& row : scheme_rows(effort)) {
+    const Fit fit = add_row(tables, row, plans, end, effort);
+    if (fit.log_p.size() > 1) report.findings.push_back(fit_text(fit, row.modulus));
   }
-  report.tables = {stable, errors, stops};
-
-  report.findings.push_back("For λ ≠ 1 the explicit scheme as printed has no double layer at all (in (43) and the update D x cancels "
+  report.findings.emplace_back("For λ ≠ 1 the explicit scheme as printed has no double layer at all (in (43) and the update D x cancels "
                             "against r). Ours keeps that of the step before; it is shown for λ = 1 only, as in the paper.");
-  TextTable pair{"Two vesicles, λ = 10.", {"scheme", "p", "stable γ̇Δt", "smallest gap", "the next larger step stops", "paper"}, {}};
-  const std::vector<int> pair_orders = effort.quick ? std::vector<int>{6} : effort.full ? std::vector<int>{8, 16} : std::vector<int>{8};
-  struct PairRow {
-    const char *scheme, *paper;
-  };
-  constexpr PairRow pair_rows[] = {{"block-jacobi", "none"}, {"block-implicit", "none"}, {"globally-implicit", "2.1e-1"}, {"bdf2", ""}};
-  for (const PairRow& row : pair_rows)
-    for (const int p : pair_orders) {
-      if (effort.quick && std::string_view(row.scheme) != "bdf2") continue;
-      sim::Scene scene = sheared_pair(p, 10);
-      scene.time.scheme = row.scheme;
-      scene.numerics.gmres_tolerance = 1e-8;
-      const Ladder ladder = effort.quick ? Ladder{0, 0} : Ladder{-2, 4};
-      const StableStep found = stable_step(scene, plans, ladder, end, effort, fmt::format("two vesicles, {}, p = {}", row.scheme, p));
-      pair.rows.push_back({row.scheme, std::to_string(p), cell_of(found),
-                           found.run.stable ? fmt::format("{:.3f}", found.run.gap) : "-",
-                           found.reason.empty() ? "-" : found.reason, row.paper});
-    }
-  report.tables.push_back(pair);
+  report.tables = {tables.stable, tables.errors, tables.stops, pair_table(plans, end, effort)};
   return report;
 }
 

@@ -3,7 +3,7 @@
 #include "app/tables/movie_formats.h"
 #include "app/tables/quantities.h"
 
-#include "render/scene/camera.h"
+#include "render/scene/view.h"
 #include "render/core/colormap.h"
 #include "render/figures/figure.h"
 #include "render/core/style.h"

@@ -7,6 +7,9 @@
 #include "sim/measures/diagnostics.h"
 #include "sim/trajectory/trajectory.h"
 
+#include <variant>
+#include <vector>
+
 namespace app {
 
 /// Scales of quantities; 0: undefined, and quantities are shown without dividing by it.
@@ -22,20 +25,30 @@ struct VesicleSample : sim::VesicleMeasures {
   double deformation = 0;  ///< (L - B) / (L + B) of the second moments in the shear plane
 };
 
+/// A curve and its value: of a vesicle at a saved state, or of a vesicle in a step.
+struct StateCurve {
+  const char* name;  ///< in a legend
+  double (*value)(const VesicleSample&, const QuantityUnits&);
+};
+struct StepCurve {
+  const char* name;  ///< in a legend
+  double (*value)(const sim::StepRecord&, std::size_t vesicle, const QuantityUnits&);
+};
+using StateCurves = std::vector<StateCurve>;
+using StepCurves = std::vector<StepCurve>;
+
 struct QuantityRow {
   std::string_view name, meaning;
   const char* axis;  ///< label
   render::Scale scale;
-  std::vector<const char*> curves;  ///< names in a legend
-  /// One value per curve, of a vesicle at a saved state; or
-  std::vector<double> (*of_state)(const VesicleSample&, const QuantityUnits&);
-  /// ... of a step. The second argument is the vesicle.
-  std::vector<double> (*of_step)(const sim::StepRecord&, std::size_t, const QuantityUnits&);
-  bool per_vesicle = true;    ///< else one curve for all
-  bool differentiate = false; ///< the values are the rates of change of the function, per time / rate
+  std::variant<StateCurves, StepCurves> curves;  ///< at least one
+  bool per_vesicle = true;                       ///< else one curve for all
+  bool differentiate = false;  ///< the values are the rates of change of the function, per time / rate
   Scaling scaling = Scaling::nothing;
   const char* bare_axis = nullptr;  ///< label without that scale
 };
+/// The names of its curves.
+std::vector<const char*> curve_names(const QuantityRow&);
 std::string axis_label(const QuantityRow&, const QuantityUnits&);
 const std::vector<QuantityRow>& quantities();
 /// Throws std::invalid_argument that names the nearest known quantity.

@@ -2,6 +2,7 @@
 
 #include "render/draw/arrow_shape.h"
 #include "render/core/assets.h"
+#include "render/core/places.h"
 #include "render/draw/draw_values.h"
 #include "render/core/style.h"
 
@@ -44,24 +45,21 @@ double clear_of_bodies(const std::vector<glm::dvec2>& shadows, const glm::dvec2&
   return glm::smoothstep(near, far, std::sqrt(nearest2));
 }
 
-// 0 where the colour bar, axes, profile or inset stand, 1 elsewhere, smooth between; place as Camera::picture_place() gives it.
-double clear_of_annotation(const Frame& frame, const glm::dvec2& place) {
-  constexpr double ramp = 0.10;  // half heights, as all lengths here
+// 0 where an overlay of the frame stands, captions aside, 1 elsewhere, smooth in between; place as
+// Camera::picture_place() gives it.
+double clear_of_overlays(const Frame& frame, const glm::dvec2& place) {
+  const ViewParameters& view = frame.view;
   const double aspect = frame.camera.half_width / frame.camera.half_height;
-  const double from_left = (1 + place.x) * aspect, from_right = (1 - place.x) * aspect;
   double clear = 1;
-  const auto keep = [&](bool shown, double x, double low, double high) {  // x: how far beyond the annotation's inner edge
-    if (!shown) return;
-    const double outside = std::max({x, low - place.y, place.y - high}) / ramp;
-    clear = std::min(clear, glm::smoothstep(0.0, 1.0, outside));
+  const auto keep = [&](bool shown, Overlay overlay) {
+    if (shown) clear = std::min(clear, clear_of(overlay, place, aspect));
   };
-  keep(frame.legend && frame.view.colour_bar, from_right - 0.42, -0.52, 0.68);
-  keep(frame.view.triad, from_right - 0.45, -1, -0.62);
-  keep(frame.inset && frame.view.inset, from_right - 0.72, 0.48, 1);
-  keep(frame.profile && frame.view.flow_profile, from_left - 0.25 * aspect, -0.72, 0.78);
-  const double from_middle = std::abs(place.x) * aspect;
-  keep(!frame.captions.title.empty(), from_middle - 0.8, 0.80, 1);
-  keep(!frame.captions.panel.empty(), from_middle - 0.35, -1, -0.80);
+  keep(frame.legend && view.colour_bar, Overlay::colour_bar);
+  keep(view.triad, Overlay::triad);
+  keep(frame.inset && view.inset, Overlay::inset);
+  keep(frame.profile && view.flow_profile, Overlay::profile);
+  keep(!frame.captions.title.empty(), Overlay::title);
+  keep(!frame.captions.panel.empty(), Overlay::panel);
   return clear;
 }
 
@@ -175,7 +173,7 @@ void Renderer::draw_arrows(const Frame& frame) {
     const glm::dvec3 v = rests ? glm::dvec3(0) : to_glm(flow.velocities.row(i)) / fastest;
     const glm::dvec3 middle = to_glm(flow.points.row(i)), arrow = v * longest_arrow * camera.half_height;
     if (!rests && !(glm::length(v) >= weakest_arrow)) continue;
-    double beside = clear_of_annotation(frame, camera.picture_place(middle));
+    double beside = clear_of_overlays(frame, camera.picture_place(middle));
     if (!camera.follows) beside = beside > 0.6;  // arrows at rest are there or not: a faint one looks like a flaw
     const double shown = flow.shown * clear_of_captions(camera.picture_place(middle)) * beside *
                          clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));

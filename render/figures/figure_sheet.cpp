@@ -1,5 +1,5 @@
 // A sheet of pictures, (a) to (h), all at one scale.
-#include "render/scene/camera.h"
+#include "render/scene/framing.h"
 #include "render/figures/figure_kinds.h"
 
 #include <fmt/format.h>
@@ -11,8 +11,6 @@
 
 namespace render {
 namespace {
-
-sim::Vec3 vector_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 /// What one state needs of its panel, along the axes of the picture.
 struct Extent {
@@ -31,93 +29,127 @@ Extent extent_of(const sim::State& state, const ViewAxes& axes) {
   return e;
 }
 
+/// What the panels of a sheet need, in lengths of the scene.
+struct SheetNeeds {
+  std::vector<Extent> extents;
+  std::vector<double> widths;
+  double half_height = 0;  ///< of all panels
+};
+SheetNeeds needs_of(const FigureInput& input, const ViewAxes& axes) {
+  SheetNeeds needs;
+  Eigen::Vector2d largest = Eigen::Vector2d::Zero();
+  for (const sim::State& state : input.states) {
+    needs.extents.push_back(extent_of(state, axes));
+    largest = largest.cwiseMax(needs.extents.back().high - needs.extents.back().low);
+  }
+  const double margin = 0.10 * largest.y() + 0.15 * input.length;
+  needs.half_height = largest.y() / 2 + margin;
+  for (const Extent& e : needs.extents)
+    needs.widths.push_back(std::max(e.high.x() - e.low.x() + 2 * margin, 1.2 * needs.half_height));
+  return needs;
+}
+
+/// The page that rows of panels fill, pt.
+struct SheetPage {
+  double width, height;  ///< height 0: as much as the rows need
+  double gap;            ///< between two panels
+  double title, space;   ///< above and below each row
+};
+
+/// Rows filled one after the other at a scale; the index after the last panel of each.
+std::vector<std::size_t> row_ends(const SheetNeeds& needs, const SheetPage& page, std::size_t most, double scale) {
+  std::vector<std::size_t> ends;
+  double used = 0;
+  std::size_t in_row = 0;
+  for (std::size_t k = 0; k < needs.widths.size(); ++k) {
+    const double w = needs.widths[k] * scale;
+    if (in_row > 0 && (used + page.gap + w > page.width * (1 + 1e-9) || in_row == most)) {
+      ends.push_back(k);
+      used = 0;
+      in_row = 0;
+    }
+    used += (in_row > 0 ? page.gap : 0) + w;
+    ++in_row;
+  }
+  ends.push_back(needs.widths.size());
+  return ends;
+}
+
+/// Of so many rows, pt.
+double height_of(const SheetNeeds& needs, const SheetPage& page, double scale, std::size_t rows) {
+  return static_cast<double>(rows) * (2 * needs.half_height * scale + page.title + page.space);
+}
+
+struct Rows {
+  std::vector<std::size_t> ends;
+  double scale = 1;  ///< points per length
+};
+
+/// The largest scale whose rows fit on the page.
+Rows fitted_rows(const SheetNeeds& needs, const SheetPage& page, std::size_t most) {
+  const double tallest = page.height > 0 ? page.height : 0.86 * page.width;
+  Rows rows;
+  rows.scale = page.width / *std::max_element(needs.widths.begin(), needs.widths.end());
+  if (page.height == 0) rows.scale = std::min(rows.scale, 0.5 * page.width / (2 * needs.half_height));
+  rows.ends = row_ends(needs, page, most, rows.scale);
+  for (int k = 0; k < 400 && height_of(needs, page, rows.scale, rows.ends.size()) > tallest; ++k) {
+    rows.scale *= 0.99;
+    rows.ends = row_ends(needs, page, most, rows.scale);
+  }
+  // Full rows may leave room for a larger scale with the same rows.
+  const auto count = static_cast<double>(rows.ends.size());
+  double fullest = 0;
+  for (std::size_t r = 0, k = 0; r < rows.ends.size(); ++r) {
+    double sum = 0;
+    const auto in_row = static_cast<double>(rows.ends[r] - k);
+    for (; k < rows.ends[r]; ++k) sum += needs.widths[k];
+    fullest = std::max(fullest, sum / (page.width - page.gap * (in_row - 1)));
+  }
+  const double room = (tallest - count * (page.title + page.space)) / (count * 2 * needs.half_height);
+  if (page.height > 0 || rows.ends.size() > 1) rows.scale = std::max(rows.scale, std::min(1 / fullest, room));
+  return rows;
+}
+
 }  // namespace
 
 Sheet sheet_layout(const FigureInput& input) {
   if (input.states.empty()) throw std::invalid_argument("a sheet of snapshots needs at least one state");
-  const Page page = page_of(input.parameters);
-  const Theme& theme = page.theme;
+  const Page paper = page_of(input.parameters);
+  const Theme& theme = paper.theme;
+  const SheetPage page{.width = paper.width > 0 ? paper.width : theme.width,
+                       .height = paper.height,
+                       .gap = 0.9 * theme.text,
+                       .title = title_height(theme),
+                       .space = 0.3 * theme.text};
   const ViewAxes axes = find_camera(input.camera).axes;
-  const double width = page.width > 0 ? page.width : theme.width, gap = 0.9 * theme.text, title = title_height(theme);
-  std::vector<Extent> extents;
-  Eigen::Vector2d largest = Eigen::Vector2d::Zero();
-  for (const sim::State& state : input.states) {
-    extents.push_back(extent_of(state, axes));
-    largest = largest.cwiseMax(extents.back().high - extents.back().low);
-  }
-  const double margin = 0.10 * largest.y() + 0.15 * input.length;
-  const double half_height = largest.y() / 2 + margin;
-  std::vector<double> needs;  // widths, in lengths of the scene
-  double widest = 0;
-  for (const Extent& e : extents) {
-    needs.push_back(std::max(e.high.x() - e.low.x() + 2 * margin, 1.2 * half_height));
-    widest = std::max(widest, needs.back());
-  }
-  const auto count = needs.size();
-  const auto most = input.parameters.columns > 0 ? static_cast<std::size_t>(input.parameters.columns) : count;
-  // Rows filled one after the other at a scale; the largest scale whose rows fit on the page.
-  const auto row_ends = [&](double scale) {
-    std::vector<std::size_t> ends;
-    double used = 0;
-    std::size_t in_row = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double w = needs[k] * scale;
-      if (in_row > 0 && (used + gap + w > width * (1 + 1e-9) || in_row == most)) {
-        ends.push_back(k);
-        used = 0;
-        in_row = 0;
-      }
-      used += (in_row > 0 ? gap : 0) + w;
-      ++in_row;
-    }
-    ends.push_back(count);
-    return ends;
-  };
-  const double tallest = page.height > 0 ? page.height : 0.86 * width;
-  double scale = width / widest;
-  if (page.height == 0) scale = std::min(scale, 0.5 * width / (2 * half_height));
-  std::vector<std::size_t> ends = row_ends(scale);
-  const auto height_of = [&](double s, std::size_t rows) { return static_cast<double>(rows) * (2 * half_height * s + title + 0.3 * theme.text); };
-  for (int k = 0; k < 400 && height_of(scale, ends.size()) > tallest; ++k) {
-    scale *= 0.99;
-    ends = row_ends(scale);
-  }
-  // Full rows may leave room for a larger scale with the same rows.
-  double fullest = 0;
-  for (std::size_t r = 0, k = 0; r < ends.size(); ++r) {
-    double sum = 0;
-    const auto in_row = static_cast<double>(ends[r] - k);
-    for (; k < ends[r]; ++k) sum += needs[k];
-    fullest = std::max(fullest, sum / (width - gap * (in_row - 1)));
-  }
-  const double room = (tallest - static_cast<double>(ends.size()) * (title + 0.3 * theme.text)) /
-                      (static_cast<double>(ends.size()) * 2 * half_height);
-  if (page.height > 0 || ends.size() > 1) scale = std::max(scale, std::min(1 / fullest, room));
+  const SheetNeeds needs = needs_of(input, axes);
+  const std::size_t most = input.parameters.columns > 0 ? static_cast<std::size_t>(input.parameters.columns) : needs.widths.size();
+  const auto [ends, scale] = fitted_rows(needs, page, most);
 
   Sheet sheet;
-  sheet.width = width;
+  sheet.width = page.width;
   sheet.scale = scale;
-  const double height = 2 * half_height * scale;
-  const double used = height_of(scale, ends.size());
+  const double height = 2 * needs.half_height * scale;
+  const double used = height_of(needs, page, scale, ends.size());
   sheet.height = page.height > 0 ? page.height : std::ceil(used);
   const double first = std::max(0.0, sheet.height - used) / 2;
   for (std::size_t r = 0, k = 0; r < ends.size(); ++r) {
     double sum = 0;
-    for (std::size_t i = k; i < ends[r]; ++i) sum += needs[i] * scale;
+    for (std::size_t i = k; i < ends[r]; ++i) sum += needs.widths[i] * scale;
     const auto in_row = static_cast<double>(ends[r] - k);
-    const double extra = (width - gap * (in_row - 1) - sum) / in_row;
+    const double extra = (page.width - page.gap * (in_row - 1) - sum) / in_row;
     double left = 0;
     for (; k < ends[r]; ++k) {
       SheetPanel p;
       p.left = left;
-      p.top = first + static_cast<double>(r) * (height + title + 0.3 * theme.text) + title;
-      p.width = needs[k] * scale + extra;
+      p.top = first + static_cast<double>(r) * (height + page.title + page.space) + page.title;
+      p.width = needs.widths[k] * scale + extra;
       p.height = height;
-      const Eigen::Vector2d middle = (extents[k].low + extents[k].high) / 2;
-      p.target = middle.x() * vector_of(axes.right) + middle.y() * vector_of(axes.up);
-      p.half_height = half_height;
+      const Eigen::Vector2d middle = (needs.extents[k].low + needs.extents[k].high) / 2;
+      p.target = middle.x() * to_sim(axes.right) + middle.y() * to_sim(axes.up);
+      p.half_height = needs.half_height;
       p.title = fmt::format("({})  {}", letter(k), time_text(input, input.time_factor * input.states[k].time));
-      left += p.width + gap;
+      left += p.width + page.gap;
       sheet.panels.push_back(std::move(p));
     }
   }

@@ -1,5 +1,7 @@
 #include "render/overlay/annotation.h"
 
+#include "render/core/places.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,11 +11,11 @@ namespace render {
 namespace {
 
 struct Sizes {
-  double unit, margin, text, line;
+  double unit, margin, text, line;  // px
 };
 Sizes sizes_of(const Image& image) {
-  const double unit = image.height / 1080.0;  // as for captions: px at 1080
-  return {unit, 44 * unit, std::max(21 * unit, 7.5), std::max(2.2 * unit, 1.0)};
+  const OverlaySizes sizes = overlay_sizes(image.height);
+  return {.unit = sizes.unit, .margin = sizes.margin, .text = sizes.small, .line = std::max(2.2 * sizes.unit, 1.0)};
 }
 
 void arrow(cairo_t* cairo, glm::dvec2 tail, glm::dvec2 tip, double line) {
@@ -93,7 +95,7 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profil
     least = std::min(least, p.y / fastest);
     most = std::max(most, p.y / fastest);
   }
-  const double width = 0.085 * image.width, scale = width / std::max(most - least, 0.5);
+  const double width = profile_width * image.width, scale = width / std::max(most - least, 0.5);
   const double axis = s.margin - scale * least;
   const auto place = [&](const glm::dvec2& p) {
     return glm::dvec2(axis + scale * p.y / fastest, image.height * (0.5 - 0.5 * p.x));
@@ -122,7 +124,7 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profil
 
 void draw_inset(Image& image, const Font& font, const Inset& inset) {
   const Sizes s = sizes_of(image);
-  const double height = 0.21 * image.height, width = inset_aspect * height, inner = 0.5 * s.margin;
+  const double height = inset_height * image.height, width = inset_aspect * height, inner = 0.5 * s.margin;
   const double left = image.width - inner - width, top = inner;
   const double scale = 0.5 * height / inset.half_height;
   const glm::dvec2 middle(left + 0.5 * width, top + 0.5 * height);
@@ -160,17 +162,6 @@ void draw_inset(Image& image, const Font& font, const Inset& inset) {
             draw_text_on_picture(cairo, font, name, origin.x + length + 0.3 * name, origin.y + 0.25 * name, "x");
             draw_text_on_picture(cairo, font, name, origin.x, origin.y - length - 0.35 * name, "z", Align::centre);
           });
-}
-
-void draw_separators(Image& image, int columns, int rows, int width, int height) {
-  const int thickness = std::max(1, static_cast<int>(std::lround(image.height / 540.0)));
-  const auto fill = [&](int x0, int y0, int x1, int y1) {
-    for (int y = std::max(y0, 0); y < std::min(y1, image.height); ++y)
-      for (int x = std::max(x0, 0); x < std::min(x1, image.width); ++x)
-        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = 255;
-  };
-  for (int c = 1; c < columns; ++c) fill(c * width - thickness, 0, c * width + thickness, image.height);
-  for (int r = 1; r < rows; ++r) fill(0, r * height - thickness, image.width, r * height + thickness);
 }
 
 }  // namespace render

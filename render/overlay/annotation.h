@@ -1,5 +1,4 @@
-// Annotations of a picture besides its captions: axes, profile of the background flow, cross-section, separators of
-// panels.
+// Annotations of a picture besides its captions: axes, profile of the background flow, cross-section.
 #pragma once
 
 #include "render/image/picture_canvas.h"
@@ -13,12 +12,7 @@ void draw_triad(Image& image, const Font& font, const Camera& camera);
 /// Arrows between a vertical line and the profile, at the left edge of the picture.
 void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profile);
 
-/// Width of the inset's box relative to its height.
-inline constexpr double inset_aspect = 1.35;
 /// The (x, z) cross-section in a box in the upper right corner.
 void draw_inset(Image& image, const Font& font, const Inset& inset);
-
-/// Thin lines between the panels of a picture.
-void draw_separators(Image& image, int columns, int rows, int width, int height);
 
 }  // namespace render

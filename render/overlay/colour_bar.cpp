@@ -1,5 +1,6 @@
 #include "render/overlay/colour_bar.h"
 
+#include "render/core/places.h"
 #include "render/core/style.h"
 
 #include <algorithm>
@@ -10,11 +11,14 @@ namespace render {
 namespace {
 
 struct Sizes {
-  double margin, text, tick, gap;
+  double margin, text, tick, gap;  // px
 };
 Sizes sizes_of(const Image& image) {
-  const double unit = image.height / 1080.0;  // as for captions: px at 1080
-  return {44 * unit, std::max(21 * unit, 7.5), std::max(7 * unit, 3.0), std::max(6 * unit, 2.5)};
+  const OverlaySizes sizes = overlay_sizes(image.height);
+  return {.margin = sizes.margin,
+          .text = sizes.small,
+          .tick = std::max(7 * sizes.unit, 3.0),
+          .gap = std::max(6 * sizes.unit, 2.5)};
 }
 
 // Widths of text do not depend on where it is drawn.
@@ -47,9 +51,12 @@ std::vector<double> bar_ticks(double low, double high) {
 
 BarPlace colour_bar_place(const Image& image, const Font& font, const Legend& legend) {
   const Sizes s = sizes_of(image);
-  const double width = std::max(22 * image.height / 1080.0, 6.0), height = std::round(0.44 * image.height);
+  const double width = std::max(22 * image.height / 1080.0, 6.0), height = std::round(colour_bar_height * image.height);
   const double right = image.width - s.margin - widest_tick(font, s.text, legend) - s.gap - s.tick;
-  return {std::round(right - width), std::round(0.295 * image.height), std::round(width), height};
+  return {.left = std::round(right - width),
+          .top = std::round(colour_bar_top * image.height),
+          .width = std::round(width),
+          .height = height};
 }
 
 void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool sign_dots) {

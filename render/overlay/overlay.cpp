@@ -1,80 +1,113 @@
 #include "render/overlay/overlay.h"
 
+#include "render/core/places.h"
+#include "render/image/picture_canvas.h"
 #include "render/overlay/annotation.h"
 #include "render/overlay/colour_bar.h"
-#include "render/image/picture_canvas.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace render {
 
+namespace {
+
+// What of the two captions in the upper left corner is shown.
+struct Shown {
+  bool time, parameters;
+};
+Shown shown_captions(const Frame& frame) {
+  return {.time = frame.view.time_stamp && !frame.captions.time.empty(),
+          .parameters = frame.view.caption && !frame.captions.parameters.empty()};
+}
+
+// Time, parameters and note, below each other.
+void draw_corner(Image& image, const Font& font, const Frame& frame) {
+  const Captions& captions = frame.captions;
+  const Shown shown = shown_captions(frame);
+  if (!shown.time && !shown.parameters && captions.note.empty()) return;
+  const OverlaySizes s = overlay_sizes(image.height);
+  const double height = s.margin + 1.2 * s.large + 3.4 * s.small;
+  draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(height))}, [&](cairo_t* cairo) {
+    double y = s.margin + 0.76 * s.large;
+    if (shown.time) {
+      set_colour(cairo, ink);
+      draw_text_on_picture(cairo, font, s.large, s.margin, y, captions.time);
+      y += 0.35 * s.large + s.small;
+    }
+    if (shown.parameters) {
+      set_colour(cairo, soft_ink);
+      draw_text_on_picture(cairo, font, s.small, s.margin, y, captions.parameters);
+      y += 1.7 * s.small;
+    }
+    if (!captions.note.empty()) {
+      set_colour(cairo, note_ink);
+      draw_text_on_picture(cairo, font, s.small, s.margin, std::max(y, s.margin + 0.76 * s.large), captions.note);
+    }
+  });
+}
+
+// In the middle of the upper edge, as large as fits beside the time and the parameters.
+void draw_title(Image& image, const Font& font, const Frame& frame) {
+  const Captions& captions = frame.captions;
+  if (captions.title.empty()) return;
+  const Shown shown = shown_captions(frame);
+  const OverlaySizes s = overlay_sizes(image.height);
+  const double top = s.margin + 0.76 * s.large;
+  draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(top + s.large))}, [&](cairo_t* cairo) {
+    set_colour(cairo, ink);
+    const double aside = std::max(text_width(cairo, font, s.large, captions.time) * shown.time,
+                                  text_width(cairo, font, s.small, captions.parameters) * shown.parameters);
+    const double room = image.width - 2 * (s.margin + aside + s.large);
+    const double width = text_width(cairo, font, s.large, captions.title);
+    const double size = width > room && room > 0 ? std::max(s.large * room / width, s.small) : s.large;
+    draw_text_on_picture(cairo, font, size, image.width / 2.0, top, captions.title, Align::centre);
+  });
+}
+
+// The name of the panel, in the middle of the lower edge.
+void draw_panel_name(Image& image, const Font& font, const std::string& name) {
+  if (name.empty()) return;
+  const OverlaySizes s = overlay_sizes(image.height);
+  const int top = static_cast<int>(image.height - s.margin - 2 * s.small),
+            height = static_cast<int>(s.margin + 2 * s.small);
+  draw_on(image, {0, top, image.width, height}, [&](cairo_t* cairo) {
+    set_colour(cairo, soft_ink);
+    draw_text_on_picture(cairo, font, s.small, image.width / 2.0, image.height - s.margin, name, Align::centre);
+  });
+}
+
+// In the lower left corner; none that is too short to be seen or too long for the picture.
+void draw_scale_bar(Image& image, const Font& font, const Captions& captions, const Camera& camera) {
+  if (!(captions.scale_length > 0)) return;
+  const OverlaySizes s = overlay_sizes(image.height);
+  const double length = captions.scale_length / camera.half_width * image.width / 2;
+  const double thickness = std::max(4 * s.unit, 1.5), baseline = image.height - s.margin;
+  if (!(length > 2 * thickness && length < 0.6 * image.width)) return;
+  const int top = static_cast<int>(baseline - 2.2 * s.small),
+            height = static_cast<int>(std::ceil(2.2 * s.small + s.margin));
+  draw_on(image, {0, top, image.width, height}, [&](cairo_t* cairo) {
+    set_colour(cairo, ink);
+    cairo_rectangle(cairo, s.margin, baseline - thickness, length, thickness);
+    cairo_fill(cairo);
+    draw_text_on_picture(cairo, font, s.small, s.margin + length / 2, baseline - thickness - 0.5 * s.small,
+                         captions.scale, Align::centre);
+  });
+}
+
+}  // namespace
+
 void draw_captions(Image& image, const Font& font, const Frame& frame) {
   const ViewParameters& view = frame.view;
-  if (frame.legend && view.colour_bar) draw_colour_bar(image, font, *frame.legend, frame.legend->mirrored && view.sign_dots);
+  if (frame.legend && view.colour_bar)
+    draw_colour_bar(image, font, *frame.legend, frame.legend->mirrored && view.sign_dots);
   if (frame.profile && view.flow_profile) draw_flow_profile(image, font, *frame.profile);
   if (frame.inset && view.inset) draw_inset(image, font, *frame.inset);
   if (view.triad) draw_triad(image, font, frame.camera);
-  const Captions& captions = frame.captions;
-  const bool time = view.time_stamp && !captions.time.empty();
-  const bool parameters = view.caption && !captions.parameters.empty();
-  const double unit = std::max(image.height, 0) / 1080.0;  // sizes below are px at 1080
-  const double margin = 44 * unit, large = std::max(29 * unit, 9.0), small = std::max(21 * unit, 7.5);
-  if (time || parameters || !captions.note.empty()) {
-    const double height = margin + 1.2 * large + 3.4 * small;
-    draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(height))}, [&](cairo_t* cairo) {
-      double y = margin + 0.76 * large;
-      if (time) {
-        set_colour(cairo, ink);
-        draw_text_on_picture(cairo, font, large, margin, y, captions.time);
-        y += 0.35 * large + small;
-      }
-      if (parameters) {
-        set_colour(cairo, soft_ink);
-        draw_text_on_picture(cairo, font, small, margin, y, captions.parameters);
-        y += 1.7 * small;
-      }
-      if (!captions.note.empty()) {
-        set_colour(cairo, note_ink);
-        draw_text_on_picture(cairo, font, small, margin, std::max(y, margin + 0.76 * large), captions.note);
-      }
-    });
-  }
-  if (!captions.title.empty() || !captions.panel.empty()) {
-    const double top = margin + 0.76 * large;
-    draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(top + large))}, [&](cairo_t* cairo) {
-      set_colour(cairo, ink);
-      if (!captions.title.empty()) {
-        // as large as fits beside the time and the parameters
-        const double aside = std::max(text_width(cairo, font, large, captions.time) * time,
-                                      text_width(cairo, font, small, captions.parameters) * parameters);
-        const double room = image.width - 2 * (margin + aside + large), width = text_width(cairo, font, large, captions.title);
-        const double size = width > room && room > 0 ? std::max(large * room / width, small) : large;
-        draw_text_on_picture(cairo, font, size, image.width / 2.0, top, captions.title, Align::centre);
-      }
-    });
-    if (!captions.panel.empty())
-      draw_on(image, {0, static_cast<int>(image.height - margin - 2 * small), image.width, static_cast<int>(margin + 2 * small)},
-              [&](cairo_t* cairo) {
-                set_colour(cairo, soft_ink);
-                draw_text_on_picture(cairo, font, small, image.width / 2.0, image.height - margin, captions.panel, Align::centre);
-              });
-  }
-  if (view.scale_bar && captions.scale_length > 0) {
-    const double length = captions.scale_length / frame.camera.half_width * image.width / 2;
-    const double thickness = std::max(4 * unit, 1.5);
-    const double baseline = image.height - margin;
-    if (length > 2 * thickness && length < 0.6 * image.width)
-      draw_on(image,
-              {0, static_cast<int>(baseline - 2.2 * small), image.width, static_cast<int>(std::ceil(2.2 * small + margin))},
-              [&](cairo_t* cairo) {
-                set_colour(cairo, ink);
-                cairo_rectangle(cairo, margin, baseline - thickness, length, thickness);
-                cairo_fill(cairo);
-                draw_text_on_picture(cairo, font, small, margin + length / 2, baseline - thickness - 0.5 * small, captions.scale,
-                          Align::centre);
-              });
-  }
+  draw_corner(image, font, frame);
+  draw_title(image, font, frame);
+  draw_panel_name(image, font, frame.captions.panel);
+  if (view.scale_bar) draw_scale_bar(image, font, frame.captions, frame.camera);
 }
 
 }  // namespace render

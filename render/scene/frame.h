@@ -60,7 +60,7 @@ struct Captions {
   std::string parameters;       ///< "Ca = 2.0   λ = 1   ν = 0.85"
   std::string note;             ///< below the parameters, highlighted: a temporary remark for the viewer
   std::string title;            ///< in the middle of the upper edge
-  std::string panel;            ///< in the upper right corner: which view this is
+  std::string panel;            ///< in the middle of the lower edge: which view this is
   std::string scale = "R_{0}";  ///< above the scale bar
   double scale_length = 1;      ///< of the bar, in lengths of the scene
 };

@@ -2,6 +2,7 @@
 // state to the PNG file.
 #include "render/draw/depth_order.h"
 #include "render/draw/draw.h"
+#include "render/scene/arrow_net.h"
 
 #include "tests/render/surfaces.h"
 

@@ -1,5 +1,7 @@
 // Where pictures are seen from, and how a movie is framed.
-#include "render/scene/camera.h"
+#include "render/core/places.h"
+#include "render/overlay/panels.h"
+#include "render/scene/arrow_net.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,6 +1,7 @@
 // A few pictures that somebody has looked at. The test house.goldens compares the same by `tanktread compare`. To accept what
 // is drawn now, look at it first: docs/ci.md.
 #include "render/draw/draw.h"
+#include "render/scene/arrow_net.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,8 @@
 // What is drawn around membranes: the flow and the captions.
+#include "render/core/places.h"
 #include "render/draw/draw.h"
+#include "render/overlay/overlay.h"
+#include "render/scene/arrow_net.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"
@@ -99,6 +102,37 @@ TEST_CASE("lines of the flow lie behind closed membranes, and in their place ins
     CHECK(changed(-1.1, 0.3));
     CHECK(changed(0.1, 0.3) == opened);
     CHECK_FALSE(changed(1.1, 0.4));
+  }
+}
+
+TEST_CASE("every overlay is drawn where arrows are kept away from it") {
+  using render::Overlay;
+  constexpr int width = 960, height = 540;
+  const render::Font font;
+  for (const Overlay overlay : {Overlay::colour_bar, Overlay::triad, Overlay::inset, Overlay::profile, Overlay::title, Overlay::panel}) {
+    render::Frame frame;
+    frame.view = surfaces::bare_view(width, height);
+    frame.view.triad = overlay == Overlay::triad;
+    frame.view.colour_bar = frame.view.inset = frame.view.flow_profile = true;
+    if (overlay == Overlay::colour_bar) frame.legend.emplace().label = "speed";
+    if (overlay == Overlay::inset) frame.inset.emplace();
+    if (overlay == Overlay::profile)
+      frame.profile.emplace().points = {{-render::profile_reach, -1}, {0, 0}, {render::profile_reach, 1}};
+    if (overlay == Overlay::title) frame.captions.title = "Two vesicles in shear";
+    if (overlay == Overlay::panel) frame.captions.panel = "flow-gradient";
+    Image image(width, height, 3);
+    std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{255});
+    render::draw_captions(image, font, frame);
+    int inside = 0, outside = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        if (!drawn(image.at(x, y))) continue;
+        const glm::dvec2 place((2 * x + 1.0) / width - 1, 1 - (2 * y + 1.0) / height);
+        ++(render::clear_of(overlay, place, static_cast<double>(width) / height) < 0.5 ? inside : outside);
+      }
+    INFO("overlay " << static_cast<int>(overlay));
+    CHECK(inside > 100);
+    CHECK(outside == 0);
   }
 }
 

@@ -1,5 +1,6 @@
 // Pictures know no unit of length and no place: the same scene in metres, in micrometres or far from the origin looks the same.
 #include "render/draw/draw.h"
+#include "render/scene/arrow_net.h"
 
 #include "surfaces.h"
 

@@ -1,0 +1,148 @@
+#include "app/figures/plots.h"
+
+#include "app/base/message.h"
+#include "app/figures/tank_treading.h"
+
+#include "render/scene/surface.h"
+#include "sim/measures/diagnostics.h"
+#include "sim/sphere/norms.h"
+#include "sim/surface/dealias.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace app {
+
+namespace {
+
+/// Value of a series at a time: linear between its points.
+double value_at(const render::Series& s, double time) {
+  const auto after = std::lower_bound(s.times.begin(), s.times.end(), time);
+  if (s.times.empty()) return std::nan("");
+  if (after == s.times.begin()) return s.values.front();
+  if (after == s.times.end()) return s.values.back();
+  const auto k = static_cast<std::size_t>(after - s.times.begin());
+  const double share = (time - s.times[k - 1]) / (s.times[k] - s.times[k - 1]);
+  return s.values[k - 1] + share * (s.values[k] - s.values[k - 1]);
+}
+
+/// Motion of each vesicle over the whole trajectory.
+std::vector<Motion> motions_of(const FigureSource& source) {
+  const double rate = time_unit(source.settings.scene).factor;
+  std::vector<double> times;
+  std::vector<std::vector<double>> angles(static_cast<std::size_t>(source.trajectory.layout().vesicles));
+  for (std::int64_t k = 0; k < source.trajectory.count(); ++k) {
+    const sim::State state = source.trajectory.state(k);
+    times.push_back(rate * state.time);
+    for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
+      const double angle =
+          sim::inclination(render::volume_moments(state.vesicles[v].position).second) * 180 / std::numbers::pi;
+      angles[v].push_back(angles[v].empty() ? angle : unwrapped(angle, angles[v].back()));
+    }
+  }
+  std::vector<Motion> all;
+  for (const std::vector<double>& of_one : angles) all.push_back(motion_of(times, of_one));
+  return all;
+}
+
+}  // namespace
+
+std::vector<render::Plot> phase_plots(const std::vector<FigureSource>& sources, const render::FigureParameters& p) {
+  const QuantityRow &x = find_quantity(p.abscissa), &y = find_quantity(p.ordinate);
+  const SharedScales scales = shared_scales(sources);
+  render::Plot plot;
+  plot.x = {.label = {}, .scale = x.scale, .grid = true};
+  plot.y = {.label = {}, .scale = y.scale, .grid = true};
+  for (const FigureSource& source : sources) {
+    const std::vector<render::Series> series = series_of(source, scales, {&x, &y}, true);
+    const render::Series &a = series[0], &b = series[1];
+    plot.x.label = a.axis;
+    plot.y.label = b.axis;
+    render::Curve curve;
+    curve.name = source.name;
+    curve.colour = plot.curves.size();
+    for (std::size_t k = 0; k < a.times.size(); ++k) {
+      curve.x.push_back(a.values[k]);
+      curve.y.push_back(value_at(b, a.times[k]));
+    }
+    plot.curves.push_back(curve);
+  }
+  const std::size_t lines = plot.curves.size();
+  for (std::size_t k = 0; k < lines; ++k) {  // where each begins
+    render::Curve start;
+    start.x = {plot.curves[k].x.front()};
+    start.y = {plot.curves[k].y.front()};
+    start.colour = k;
+    start.line = false;
+    start.marker = render::Marker::dot;
+    plot.curves.push_back(start);
+  }
+  return {plot};
+}
+
+std::vector<render::Plot> spectra_plots(const render::FigureInput& input) {
+  sim::Plans plans;
+  render::Plot position;
+  position.x = {.label = "degree n", .grid = true};
+  position.y = {.label = "E_{n} of the position", .scale = render::Scale::logarithmic, .grid = true};
+  render::Plot curvature = position;
+  curvature.y.label = "E_{n} of the mean curvature";
+  const double first = input.states.front().time, span = std::max(input.states.back().time - first, 1e-300);
+  constexpr double nothing = 1e-11;  // degrees that a symmetry empties
+  for (const sim::State& state : input.states) {
+    const sim::VesicleState& v = state.vesicles.front();
+    const int p = v.position.order, q = 4 * p;
+    const sim::Coefficients h = sim::mean_curvature(plans, sim::resized(v.position, q), q);
+    render::Curve x, k;
+    x.name = render::time_text(input, input.time_factor * state.time);
+    x.instant = (state.time - first) / span;
+    x.marker = render::Marker::dot;
+    k = x;
+    k.marker.reset();
+    k.name.clear();
+    for (int n = 0; n <= q; ++n) {
+      const double of_x = n <= p && n > 0 ? sim::modular_norm(v.position, n) / input.length : 0;
+      const double of_h = sim::modular_norm(h, n) * input.length;
+      if (of_x > nothing) x.x.push_back(n), x.y.push_back(of_x);
+      if (of_h > nothing) k.x.push_back(n), k.y.push_back(of_h);
+    }
+    position.curves.push_back(std::move(x));
+    curvature.curves.push_back(std::move(k));
+  }
+  const int p = input.states.front().vesicles.front().position.order;
+  position.x_range = render::Range{0, static_cast<double>(p)};
+  curvature.x_range = render::Range{0, 4.0 * p};
+  return {position, curvature};
+}
+
+std::vector<render::Plot> steady_plots(const std::vector<FigureSource>& sources) {
+  sim::Plans plans;
+  std::vector<SteadyPoint> points;
+  for (const FigureSource& source : sources) {
+    const sim::Scene& scene = source.settings.scene;
+    if (time_unit(scene).symbol == "t") throw std::runtime_error("a figure of tank-treading needs steady shear flows");
+    const sim::State last = source.trajectory.state(source.trajectory.count() - 1);
+    const std::vector<Motion> motions = motions_of(source);
+    for (std::size_t v = 0; v < last.vesicles.size(); ++v) {
+      const std::string who = fmt::format("'{}', vesicle {}:", source.file, v);
+      if (motions[v] == Motion::tumbling || motions[v] == Motion::swinging)
+        throw std::runtime_error(
+            fmt::format("{} it {}, and a figure of tank-treading shows steady angles only; 'figure inclination' "
+                        "shows how it turns",
+                        who, text_of(motions[v])));
+      if (motions[v] == Motion::untold)
+        tell(fmt::format("{} too short a run to tell whether it tank-treads, swings or tumbles; marked as not settled",
+                         who));
+      points.push_back(
+          steady_point(plans, last.vesicles[v], scene.vesicles[v].viscosity_contrast, time_unit(scene).factor));
+      points.back().motion = motions[v];
+    }
+  }
+  return tank_treading_plots(points);
+}
+
+}  // namespace app

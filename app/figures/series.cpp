@@ -1,0 +1,166 @@
+#include "app/figures/series.h"
+
+#include "app/figures/tank_treading.h"
+
+#include "render/scene/surface.h"
+#include "sim/measures/diagnostics.h"
+#include "sim/suspension/velocity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace app {
+
+namespace {
+
+/// What the quantities of one trajectory are computed from; left empty where no quantity needs it.
+struct Measurements {
+  double length = 1;                                ///< area radius
+  std::vector<double> times;                        ///< of the saved states
+  std::vector<std::vector<VesicleSample>> samples;  ///< state, vesicle
+  std::vector<sim::StepRecord> steps;
+};
+
+/// Taylor's, with the axes of the second moments in the shear plane.
+double deformation_of(const sim::Coefficients& position) {
+  const Eigen::Matrix3d m = render::volume_moments(position).second;
+  const double mean = (m(0, 0) + m(2, 2)) / 2, half = std::hypot((m(0, 0) - m(2, 2)) / 2, m(0, 2));
+  const double l = std::sqrt(mean + half), b = std::sqrt(mean - half);
+  return (l - b) / (l + b);
+}
+
+/// Of one vesicle, with its velocity relative to its centre.
+VesicleSample sample_of(sim::Plans& plans, sim::VesicleState vesicle, double initial_area, double initial_volume) {
+  vesicle.velocity.values.row(0) -= std::sqrt(sim::default_area) * sim::centroid_velocity(plans, vesicle).transpose();
+  VesicleSample sample{sim::measure(plans, vesicle, initial_area, initial_volume)};
+  sample.deformation = deformation_of(vesicle.position);
+  return sample;
+}
+
+/// All saved states, with angles continued from state to state.
+void measure_states(const sim::TrajectoryReader& trajectory, Measurements& m) {
+  sim::Plans plans;
+  std::vector<sim::VesicleMeasures> initial;
+  for (std::int64_t k = 0; k < trajectory.count(); ++k) {
+    const sim::State state = trajectory.state(k);
+    m.times.push_back(state.time);
+    std::vector<VesicleSample> now;
+    for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
+      if (k == 0) initial.push_back(sim::measure(plans, state.vesicles[v], 1, 1));
+      now.push_back(sample_of(plans, state.vesicles[v], initial[v].area, initial[v].volume));
+      double& angle = now.back().inclination_deg;
+      if (k > 0) angle = unwrapped(angle, m.samples.back()[v].inclination_deg);
+    }
+    m.samples.push_back(std::move(now));
+  }
+}
+
+Measurements measurements_of(const FigureSource& source, const std::vector<const QuantityRow*>& rows) {
+  const auto of_states = [](const QuantityRow* row) { return std::holds_alternative<StateCurves>(row->curves); };
+  Measurements m;
+  m.length = length_of(source.trajectory);
+  if (std::any_of(rows.begin(), rows.end(), of_states)) measure_states(source.trajectory, m);
+  if (!std::all_of(rows.begin(), rows.end(), of_states)) m.steps = source.trajectory.steps();
+  return m;
+}
+
+/// Central differences, one-sided at the ends.
+void differentiate(render::Series& s) {
+  const std::vector<double> values = s.values;
+  const std::size_t n = values.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t a = i > 0 ? i - 1 : 0, b = std::min(i + 1, n - 1);
+    s.values[i] = b > a ? (values[b] - values[a]) / (s.times[b] - s.times[a]) : std::nan("");
+  }
+}
+
+double time_factor(const FigureSource& source, const SharedScales& scales) {
+  return scales.rate ? time_unit(source.settings.scene).factor : 1;
+}
+
+QuantityUnits units_of(const FigureSource& source, const SharedScales& scales, double length, std::size_t vesicle) {
+  const sim::Scene& scene = source.settings.scene;
+  return {.length = length,
+          .rate = scales.rate ? time_factor(source, scales) : 0,
+          .bending_modulus = scales.bending ? scene.vesicles[vesicle].bending_modulus : 0};
+}
+
+/// Values of one curve of one vesicle.
+void put_values(const StateCurve& curve, const Measurements& m, std::size_t vesicle, const QuantityUnits& units,
+                double factor, render::Series& series) {
+  for (std::size_t k = 0; k < m.samples.size(); ++k) {
+    series.times.push_back(factor * m.times[k]);
+    series.values.push_back(curve.value(m.samples[k][vesicle], units));
+  }
+}
+void put_values(const StepCurve& curve, const Measurements& m, std::size_t vesicle, const QuantityUnits& units,
+                double factor, render::Series& series) {
+  for (const sim::StepRecord& record : m.steps) {
+    series.times.push_back(factor * record.time);
+    series.values.push_back(curve.value(record, vesicle, units));
+  }
+}
+
+/// How curve `c` of vesicle `v` looks, of `curves` and `vesicles` in all.
+render::Series empty_series(const FigureSource& source, const char* curve, std::size_t c, std::size_t curves, int v,
+                            int vesicles) {
+  std::string name = curves > 1 ? curve : "";
+  const auto add = [&](const std::string& word) { name += (name.empty() ? "" : ", ") + word; };
+  if (vesicles > 1) add(fmt::format("vesicle {}", v));
+  if (!source.name.empty()) add(source.name);
+  render::Series series;
+  series.name = name;
+  series.dashed = v % 2 == 1;                               // where two agree, both are seen
+  if (vesicles > 1 && curves > 1 && source.name.empty()) {  // colours tell the curves, dashes the vesicles
+    series.colour = c;
+    series.legend = v == 0 ? curve : "";
+  }
+  return series;
+}
+
+}  // namespace
+
+double length_of(const sim::TrajectoryReader& trajectory) {
+  sim::Plans plans;
+  return std::sqrt(sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1).area / sim::default_area);
+}
+
+SharedScales shared_scales(const std::vector<FigureSource>& sources) {
+  SharedScales s{.time = time_unit(sources.front().settings.scene), .rate = true, .bending = true};
+  for (const FigureSource& source : sources) {
+    const sim::Scene& scene = source.settings.scene;
+    s.rate = s.rate && time_unit(scene).symbol != TimeUnit{}.symbol;
+    for (const sim::VesicleParameters& v : scene.vesicles) s.bending = s.bending && v.bending_modulus > 0;
+  }
+  if (!s.rate) s.time = {};
+  return s;
+}
+
+std::vector<render::Series> series_of(const FigureSource& source, const SharedScales& scales,
+                                      const std::vector<const QuantityRow*>& rows, bool single) {
+  const Measurements measurements = measurements_of(source, rows);
+  const double factor = time_factor(source, scales);
+  std::vector<render::Series> all;
+  for (const QuantityRow* row : rows) {
+    const int vesicles = row->per_vesicle && !single ? source.trajectory.layout().vesicles : 1;
+    const auto add_vesicle = [&](const auto& curves, int v) {
+      const auto vesicle = static_cast<std::size_t>(v);
+      const QuantityUnits units = units_of(source, scales, measurements.length, vesicle);
+      const std::size_t count = single ? 1 : curves.size();
+      for (std::size_t c = 0; c < count; ++c) {
+        render::Series series = empty_series(source, curves[c].name, c, count, v, vesicles);
+        series.axis = axis_label(*row, units);
+        series.scale = row->scale;
+        put_values(curves[c], measurements, vesicle, units, factor, series);
+        if (row->differentiate) differentiate(series);
+        all.push_back(std::move(series));
+      }
+    };
+    for (int v = 0; v < vesicles; ++v) std::visit([&](const auto& curves) { add_vesicle(curves, v); }, row->curves);
+  }
+  return all;
+}
+
+}  // namespace app

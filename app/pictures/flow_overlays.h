@@ -1,0 +1,20 @@
+// The flow in a frame: arrows or streamlines, and the profile beside the vesicles.
+#pragma once
+
+#include "app/pictures/panel.h"
+
+#include "sim/layers/plans.h"
+
+namespace app {
+
+/// Background velocity at the net of arrows; empty where the view shows none.
+render::FlowArrows arrows_of(const ViewPanel&, const render::StateSummary&);
+
+/// Streamlines of the whole flow in the plane of the arrows, as far as the picture reaches; none under the captions,
+/// and none at all where the view shows none. Throws Interrupted at the first signal.
+render::FlowLines flow_lines_of(sim::Plans&, const ViewPanel&, const sim::State&, const render::Camera&);
+
+/// The background velocity to the right of the picture along the vertical line through its middle.
+render::FlowProfile profile_of(const ViewPanel&, const render::Camera&, double time);
+
+}  // namespace app

@@ -1,0 +1,134 @@
+#include "app/pictures/production.h"
+
+#include "app/base/printable.h"
+#include "app/base/version.h"
+#include "app/pictures/flow_overlays.h"
+#include "app/pictures/instants.h"
+#include "app/pictures/overlays.h"
+#include "app/scene/scene_text.h"
+
+#include "render/overlay/panels.h"
+#include "sim/measures/diagnostics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+namespace app {
+
+namespace {
+
+/// What one pass over a trajectory says about all its frames.
+struct SourceMeasures {
+  std::vector<render::StateSummary> summaries;  ///< of the instants that were looked at
+  std::vector<double> laid;                     ///< times at which labels were reset on any vesicle
+  Painting painting;
+  render::Captions captions;
+};
+
+/// titled: the title is needed to tell several sources apart.
+SourceMeasures measures_of(const PictureSource& source, bool titled, std::optional<double> still) {
+  const auto& [trajectory, settings] = source;
+  const std::vector<std::int64_t> chosen = instants_to_look_at(trajectory);
+  SourceMeasures m;
+  std::set<double> laid;
+  for (const std::int64_t i : chosen) {
+    const sim::State state = trajectory.state(i);
+    m.summaries.push_back(render::summarize(state));
+    for (const sim::VesicleState& v : state.vesicles)
+      if (v.labels_laid > 0) laid.insert(v.labels_laid_time);
+  }
+  m.laid.assign(laid.begin(), laid.end());
+  sim::Plans plans;
+  const sim::VesicleMeasures first = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
+  const double area_radius = std::sqrt(first.area / sim::default_area);
+  std::optional<sim::State> only;
+  if (still) only = state_at(trajectory, *still);
+  m.painting = plan_painting(trajectory, chosen, settings, area_radius, only ? &*only : nullptr);
+  m.captions.parameters = parameter_caption(settings.scene, area_radius, first.reduced_volume);
+  m.captions.scale_length = area_radius;
+  if (settings.view.title || titled) m.captions.title = printable(settings.scene.title);
+  return m;
+}
+
+std::string hash_of(const std::vector<PictureSource>& sources, bool still) {
+  std::string hash;
+  for (const auto& [trajectory, settings] : sources)
+    hash += fmt::format("{}-{}-", picture_hash(settings), trajectory.count());
+  return hash + version() + (still ? "-still" : "");
+}
+
+/// Columns and rows of the panels in a picture of the first view's size; a row for each source when there are several
+/// sources and several cameras.
+Production arranged(const render::ViewParameters& first, std::size_t sources, std::size_t cameras) {
+  const auto count = static_cast<int>(sources * cameras);
+  Production production;
+  production.width = first.size[0];
+  production.height = first.size[1];
+  production.columns = sources > 1 && cameras > 1 ? static_cast<int>(cameras)
+                                                  : render::panel_columns(count, production.width, production.height);
+  production.rows = (count + production.columns - 1) / production.columns;
+  constexpr int least = 16;  // px
+  if (production.width / production.columns < least || production.height / production.rows < least)
+    throw std::invalid_argument(
+        fmt::format("{} views need a larger picture than {} x {}", count, production.width, production.height));
+  return production;
+}
+
+/// The view with what all frames of the panel share: framing, room of the inset, speed of the longest arrow.
+ViewPanel make_panel(const PictureSource& source, const render::ViewParameters& view, const SourceMeasures& m) {
+  ViewPanel p{.source = source, .view = view};
+  p.framing = render::frame_trajectory(m.summaries, view, source.settings.key_frames);
+  p.captions = m.captions;
+  p.painting = m.painting;
+  p.laid = m.laid;
+  render::check_framing(p.framing, m.summaries);
+  frame_inset(p, m.summaries);
+  for (const render::StateSummary& summary : m.summaries) {
+    const render::FlowArrows arrows = arrows_of(p, summary);
+    if (arrows.velocities.rows() > 0)
+      p.arrow_speed = std::max(p.arrow_speed, arrows.velocities.rowwise().norm().maxCoeff());
+  }
+  const render::MovieParameters& movie = source.settings.movie;
+  const double per_frame = time_of_frame(source.trajectory, movie);
+  const std::int64_t states = source.trajectory.count();
+  constexpr double notice = 1.2;  // seconds of the movie
+  p.notice = notice * movie.frame_rate * per_frame;
+  p.time_format = time_format(source.settings.scene, per_frame, states > 0 ? source.trajectory.time(states - 1) : 0);
+  return p;
+}
+
+}  // namespace
+
+Production prepare_pictures(const std::vector<PictureSource>& sources, std::optional<double> still) {
+  const render::ViewParameters& first = sources.front().settings.view;
+  std::vector<SourceMeasures> measures;
+  for (const PictureSource& source : sources) measures.push_back(measures_of(source, sources.size() > 1, still));
+  std::vector<Painting*> paintings;
+  for (SourceMeasures& m : measures) paintings.push_back(&m.painting);
+  share_legend(paintings, !first.field_range.empty());
+
+  std::vector<std::string> cameras = first.views;
+  if (cameras.empty()) cameras = {first.camera};
+  Production production = arranged(first, sources.size(), cameras.size());
+  production.hash = hash_of(sources, still.has_value());
+  for (std::size_t k = 0; k < sources.size(); ++k)
+    for (std::size_t c = 0; c < cameras.size(); ++c) {
+      const bool last = k + 1 == sources.size() && c + 1 == cameras.size(), several = cameras.size() > 1;
+      render::ViewParameters view = sources[k].settings.view;
+      view.size = {production.width / production.columns, production.height / production.rows};
+      view.supersampling = first.supersampling;
+      view.camera = cameras[c];
+      view.colour_bar = view.colour_bar && last;
+      if (several) view.caption = view.caption && c == 0;
+      ViewPanel& panel = production.panels.emplace_back(make_panel(sources[k], view, measures[k]));
+      if (several) panel.captions.panel = cameras[c];
+      panel.stamped = c == 0;
+    }
+  return production;
+}
+
+}  // namespace app

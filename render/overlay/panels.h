@@ -1,0 +1,17 @@
+// A picture of several panels: their arrangement, and the lines between them.
+#pragma once
+
+#include "render/image/image.h"
+
+namespace render {
+
+/// Columns of the most even division of a picture into `count` panels.
+int panel_columns(int count, int width, int height);
+
+/// Copies `part` into an RGB picture that is large enough; left, top: place of its upper left corner, px.
+void paste(Image& into, const Image& part, int left, int top);
+
+/// Thin lines between the panels of a picture, each `width` x `height` px.
+void draw_separators(Image& image, int columns, int rows, int width, int height);
+
+}  // namespace render
