@@ -1,6 +1,6 @@
 // tanktread: lipid vesicles in Stokes flow, from a scene to a movie.
-#include "app/commands/cli.h"
 #include "app/base/processor.h"
+#include "app/commands/cli.h"
 
 #if defined(__x86_64__)
 #include <unistd.h>
@@ -13,17 +13,21 @@ void say(const char* text) {
   if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) ::_exit(1);
 }
 
-/// Everything else may use instructions that this processor lacks, initialisers of static objects among it: this file is
-/// compiled for every processor of the architecture, and 101 is the first place that a program may take among constructors.
+/// Everything else may use instructions that this processor lacks, initialisers of static objects among it: this file
+/// is compiled for every processor of the architecture, and 101 is the first place that a program may take among
+/// constructors.
 [[gnu::constructor(101)]] void check_processor() {
   __builtin_cpu_init();
   const struct {
     unsigned bit;
     bool here;
     const char* name;
-  } rows[] = {{app::popcnt, __builtin_cpu_supports("popcnt") != 0, "POPCNT"}, {app::sse42, __builtin_cpu_supports("sse4.2") != 0, "SSE4.2"},
-              {app::avx, __builtin_cpu_supports("avx") != 0, "AVX"},          {app::avx2, __builtin_cpu_supports("avx2") != 0, "AVX2"},
-              {app::bmi2, __builtin_cpu_supports("bmi2") != 0, "BMI2"},       {app::fma, __builtin_cpu_supports("fma") != 0, "FMA"},
+  } rows[] = {{app::popcnt, __builtin_cpu_supports("popcnt") != 0, "POPCNT"},
+              {app::sse42, __builtin_cpu_supports("sse4.2") != 0, "SSE4.2"},
+              {app::avx, __builtin_cpu_supports("avx") != 0, "AVX"},
+              {app::avx2, __builtin_cpu_supports("avx2") != 0, "AVX2"},
+              {app::bmi2, __builtin_cpu_supports("bmi2") != 0, "BMI2"},
+              {app::fma, __builtin_cpu_supports("fma") != 0, "FMA"},
               {app::avx512, __builtin_cpu_supports("avx512f") != 0, "AVX-512"}};
   bool lacks = false;
   for (const auto& row : rows) {

@@ -60,7 +60,8 @@ pid_t start_child(ChildProgram program) {
 
 int wait_for_child(pid_t child) {
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
   return status;
 }
 

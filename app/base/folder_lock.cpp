@@ -27,9 +27,11 @@ void sign(int file, const std::filesystem::path& path) {
   char start[owner.size()];
   const ssize_t got = ::pread(file, start, sizeof start, 0);
   if (got > 0 && !owner.starts_with(std::string_view(start, static_cast<std::size_t>(got))))
-    throw std::runtime_error(fmt::format("'{}' was not made by this program, which needs this name for its lock", path.string()));
+    throw std::runtime_error(
+        fmt::format("'{}' was not made by this program, which needs this name for its lock", path.string()));
   const std::string line = fmt::format("{}{}\n", owner, ::getpid());
-  if (::ftruncate(file, 0) == 0 && ::pwrite(file, line.data(), line.size(), 0) < 0) return;  // a full disk: locked all the same
+  if (::ftruncate(file, 0) == 0 && ::pwrite(file, line.data(), line.size(), 0) < 0)
+    return;  // a full disk: locked all the same
 }
 
 }  // namespace
@@ -39,7 +41,8 @@ bool FolderLock::File::take(bool shared) {
   for (;;) {
     descriptor = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0)
-      throw std::runtime_error(fmt::format("cannot write into '{}': {}", path.parent_path().string(), std::strerror(errno)));
+      throw std::runtime_error(
+          fmt::format("cannot write into '{}': {}", path.parent_path().string(), std::strerror(errno)));
     if (::flock(descriptor, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
       const int error = errno;
       if (error != EWOULDBLOCK) return true;  // a file system without locks: nothing can be known there
@@ -50,7 +53,8 @@ bool FolderLock::File::take(bool shared) {
       continue;
     }
     // The holder before us may have removed the file between our open and our lock.
-    struct stat ours{}, named{};
+    struct stat ours {
+    }, named{};
     if (::fstat(descriptor, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino) {
       try {
         sign(descriptor, path);
@@ -76,14 +80,16 @@ FolderLock::FolderLock(const std::filesystem::path& folder, int shard, int shard
   std::error_code error;
   if (std::filesystem::create_directories(folder, error)) made_ = folder;
   if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", folder.string(), error.message()));
-  if (!whole_.take(shards > 1)) throw std::runtime_error(fmt::format("another process is writing into '{}'", folder.string()));
+  if (!whole_.take(shards > 1))
+    throw std::runtime_error(fmt::format("another process is writing into '{}'", folder.string()));
   if (shards == 1) {
     remove_dead_parts(folder);
     return;
   }
   if (part_.take(false)) return;
   whole_.release();
-  throw std::runtime_error(fmt::format("another process is drawing shard {}/{} into '{}'", shard, shards, folder.string()));
+  throw std::runtime_error(
+      fmt::format("another process is drawing shard {}/{} into '{}'", shard, shards, folder.string()));
 }
 
 /// Locks of shards that were killed: nobody draws shards now.

@@ -52,8 +52,10 @@ bool measure(int file, std::uint32_t& checksum, std::uint64_t& bytes) {
 std::string written(std::string_view name) {
   std::string text;
   for (const char c : name)
-    if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f || c == '%') text += fmt::format("%{:02x}", byte);
-    else text += c;
+    if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f || c == '%')
+      text += fmt::format("%{:02x}", byte);
+    else
+      text += c;
   return text;
 }
 
@@ -85,13 +87,15 @@ std::string read_all(int file) {
 
 /// The list is empty or begins as ours do, as far as a kill let it; anything else of its name is somebody else's.
 void require_list(int file, const fs::path& path) {
-  struct stat status{};
+  struct stat status {};
   char start[heading.size()];
-  const ssize_t got = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) ? ::pread(file, start, sizeof start, 0) : -1;
+  const ssize_t got =
+      ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) ? ::pread(file, start, sizeof start, 0) : -1;
   const std::string_view text(start, got > 0 ? static_cast<std::size_t>(got) : 0);
   const std::string_view line = text.substr(0, text.find('\n'));
   if (got == 0 || (!line.empty() && heading.starts_with(line))) return;
-  throw std::runtime_error(fmt::format("'{}' was not made by this program, which needs this name for its list", path.string()));
+  throw std::runtime_error(
+      fmt::format("'{}' was not made by this program, which needs this name for its list", path.string()));
 }
 
 /// A picture that says it is ours. `damaged`: and cannot be read.
@@ -115,7 +119,8 @@ bool is_marked_picture(const fs::path& path, bool damaged) {
 }  // namespace
 
 std::uint32_t checksum(std::string_view bytes) {
-  return static_cast<std::uint32_t>(::crc32_z(::crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+  return static_cast<std::uint32_t>(
+      ::crc32_z(::crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 OwnedFiles::OwnedFiles(fs::path folder) : folder_(std::move(folder)) {
@@ -135,21 +140,25 @@ OwnedFiles::OwnedFiles(fs::path folder) : folder_(std::move(folder)) {
 }
 
 OwnedFiles::OwnedFiles(OwnedFiles&& other) noexcept
-    : folder_(std::move(other.folder_)), list_(std::move(other.list_)), unwritten_(std::move(other.unwritten_)),
-      unlisted_(other.unlisted_), adding_(std::exchange(other.adding_, -1)) {}
+    : folder_(std::move(other.folder_)),
+      list_(std::move(other.list_)),
+      unwritten_(std::move(other.unwritten_)),
+      unlisted_(other.unlisted_),
+      adding_(std::exchange(other.adding_, -1)) {}
 
 OwnedFiles::~OwnedFiles() { close_list(); }
 
 OwnedFiles::List OwnedFiles::read(int file) {
   List list;
-  struct stat status{};
+  struct stat status {};
   if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return list;
   const std::string text = read_all(file);
   for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
     const char *first = text.data() + at, *last = text.data() + end;
     Mark mark;
     const auto sum = std::from_chars(first, last, mark.checksum, 16);
-    if (sum.ec != std::errc() || sum.ptr == last || *sum.ptr != ' ') continue;  // the heading, or a line that a kill cut short
+    if (sum.ec != std::errc() || sum.ptr == last || *sum.ptr != ' ')
+      continue;  // the heading, or a line that a kill cut short
     const auto size = std::from_chars(sum.ptr + 1, last, mark.bytes);
     if (size.ec != std::errc() || size.ptr == last || *size.ptr != ' ') continue;
     std::vector<Mark>& marks = list[read_name({size.ptr + 1, last})];
@@ -169,7 +178,7 @@ bool OwnedFiles::has_mark(const std::string& name, const std::vector<Mark>& mark
 
 bool OwnedFiles::foreign(const std::string& name, bool quick) const {
   const fs::path path = folder_ / name;
-  struct stat status{};
+  struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return false;  // nothing is there
   if (!S_ISREG(status.st_mode)) return true;
   if (status.st_size == 0) return false;  // nothing is in it
@@ -184,8 +193,9 @@ bool OwnedFiles::foreign(const std::string& name, bool quick) const {
 void OwnedFiles::require(const std::string& name, bool quick) const {
   if (!foreign(name, quick)) return;
   const bool link = fs::is_symlink(folder_ / name);
-  throw std::runtime_error(fmt::format("'{}' {}; it is left as it is: move it away, or give another -o", (folder_ / name).string(),
-                                       link                     ? "is a link, and links are not followed out of a folder of results"
+  throw std::runtime_error(fmt::format("'{}' {}; it is left as it is: move it away, or give another -o",
+                                       (folder_ / name).string(),
+                                       link ? "is a link, and links are not followed out of a folder of results"
                                        : list_.contains(name) ? "has been changed since this program wrote it"
                                                               : "was not made by this program"));
 }
@@ -193,9 +203,9 @@ void OwnedFiles::require(const std::string& name, bool quick) const {
 void OwnedFiles::require_folder(const std::string& name) const {
   const fs::file_status status = fs::symlink_status(folder_ / name);
   if (!fs::exists(status) || fs::is_directory(status)) return;
-  throw std::runtime_error(fmt::format("'{}' is {}; give another -o", (folder_ / name).string(),
-                                       fs::is_symlink(status) ? "a link, and links are not followed out of a folder of results"
-                                                              : "not a folder"));
+  throw std::runtime_error(fmt::format(
+      "'{}' is {}; give another -o", (folder_ / name).string(),
+      fs::is_symlink(status) ? "a link, and links are not followed out of a folder of results" : "not a folder"));
 }
 
 void OwnedFiles::require_frames(bool quick) const {
@@ -211,7 +221,7 @@ void OwnedFiles::require_frames(bool quick) const {
 void OwnedFiles::adopt(const std::string& name) {
   const int file = ::open((folder_ / name).c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
   if (file < 0) return;
-  struct stat status{};
+  struct stat status {};
   Mark mark;
   const bool read = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && measure(file, mark.checksum, mark.bytes);
   ::close(file);
@@ -226,7 +236,7 @@ int OwnedFiles::open_list(bool exclusive) const {
   for (;;) {
     const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (file < 0) fail(path, errno);
-    struct flock whole{};
+    struct flock whole {};
     whole.l_type = exclusive ? F_WRLCK : F_RDLCK;
     whole.l_whence = SEEK_SET;
     int error = 0;
@@ -237,7 +247,8 @@ int OwnedFiles::open_list(bool exclusive) const {
       return -1;
     }
     // It may have been written anew between our open and our lock.
-    struct stat ours{}, named{};
+    struct stat ours {
+    }, named{};
     if (::fstat(file, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino) {
       try {
         require_list(file, path);
@@ -263,9 +274,10 @@ void OwnedFiles::write_lines(const std::string& lines) {
   if (adding_ < 0) adding_ = open_list(false);
   const std::string text = std::exchange(unwritten_, {}) + lines;
   if (text.empty()) return;
-  struct stat status{};
+  struct stat status {};
   char last = '\n';  // of a line that a kill cut short, something else
-  if (::fstat(adding_, &status) == 0 && status.st_size > 0 && ::pread(adding_, &last, 1, status.st_size - 1) != 1) last = '\n';
+  if (::fstat(adding_, &status) == 0 && status.st_size > 0 && ::pread(adding_, &last, 1, status.st_size - 1) != 1)
+    last = '\n';
   const std::string all = fmt::format("{}{}{}", status.st_size == 0 ? heading : "", last == '\n' ? "" : "\n", text);
   // In one piece, so that those of several processes do not mix.
   if (const ssize_t done = ::write(adding_, all.data(), all.size()); done != static_cast<ssize_t>(all.size())) {
@@ -285,7 +297,8 @@ void OwnedFiles::add(const std::string& name, Mark mark) {
 
 sim::Draft OwnedFiles::prepare(const std::string& name, std::string_view bytes) {
   require(name);
-  if (!list_.contains(name)) adopt(name);  // what says that it is ours without a line would be a stranger beside the new one
+  if (!list_.contains(name))
+    adopt(name);  // what says that it is ours without a line would be a stranger beside the new one
   try {
     sim::Draft draft(folder_ / name);
     draft.write(bytes);
@@ -338,7 +351,7 @@ void OwnedFiles::clean() const {
 void OwnedFiles::settle() {
   if (!unwritten_.empty()) write_lines("");
   close_list();
-  struct stat status{};
+  struct stat status {};
   if (::lstat((folder_ / list_name).c_str(), &status) != 0) return;
   const int file = open_list(true);
   if (file < 0) return;  // the other one will
@@ -391,19 +404,25 @@ void ResultFiles::require(const fs::path& path) {
   if (!fs::exists(target, error)) return;
   for (const fs::path& input : inputs_)
     if (fs::equivalent(input, target, error))
-      throw std::runtime_error(fmt::format("'{}' is read by this command, which cannot replace it; give another name", path.string()));
-  if (fs::is_directory(target)) throw std::runtime_error(fmt::format("'{}' is a folder; give the name of a file", path.string()));
+      throw std::runtime_error(
+          fmt::format("'{}' is read by this command, which cannot replace it; give another name", path.string()));
+  if (fs::is_directory(target))
+    throw std::runtime_error(fmt::format("'{}' is a folder; give the name of a file", path.string()));
   if (!fs::is_regular_file(target)) return;  // a pipe, a device: nothing is replaced
   if (sim::holds_trajectory(target))
-    throw std::runtime_error(fmt::format("'{}' is a trajectory, which nothing else replaces; give another name", path.string()));
+    throw std::runtime_error(
+        fmt::format("'{}' is a trajectory, which nothing else replaces; give another name", path.string()));
   if (!force_ && owned(target).foreign(target.filename().string()))
-    throw std::runtime_error(fmt::format("'{}' exists and was not made by this program, or was changed since; give another name, "
-                                         "or --force to replace it", path.string()));
+    throw std::runtime_error(
+        fmt::format("'{}' exists and was not made by this program, or was changed since; give another name, "
+                    "or --force to replace it",
+                    path.string()));
 }
 
 void ResultFiles::require_inside(const fs::path& path) {
   if (fs::is_symlink(path))
-    throw std::runtime_error(fmt::format("'{}' is a link, and links are not followed out of a folder of results", path.string()));
+    throw std::runtime_error(
+        fmt::format("'{}' is a link, and links are not followed out of a folder of results", path.string()));
   require(path);
 }
 

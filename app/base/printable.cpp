@@ -16,8 +16,11 @@ bool is_noncharacter(char32_t code) { return (code & 0xfffe) == 0xfffe || within
 Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);
-  const std::size_t length = lead < 0x80 ? 1 : within(lead, 0xc2, 0xdf) ? 2 : within(lead, 0xe0, 0xef) ? 3
-                             : within(lead, 0xf0, 0xf4) ? 4 : 0;
+  const std::size_t length = lead < 0x80                ? 1
+                             : within(lead, 0xc2, 0xdf) ? 2
+                             : within(lead, 0xe0, 0xef) ? 3
+                             : within(lead, 0xf0, 0xf4) ? 4
+                                                        : 0;
   if (length == 0 || length > text.size()) return {};
   char32_t code = length == 1 ? lead : lead & (0xffU >> (length + 1));
   for (std::size_t i = 1; i < length; ++i) {
@@ -38,8 +41,10 @@ std::string printable(std::string_view text) {
   std::string result;
   while (!text.empty()) {
     const Character c = first_character(text);
-    if (c.length == 0 || is_control(c.code)) result += '?';
-    else result += text.substr(0, c.length);
+    if (c.length == 0 || is_control(c.code))
+      result += '?';
+    else
+      result += text.substr(0, c.length);
     text.remove_prefix(std::max<std::size_t>(c.length, 1));
   }
   return result;

@@ -9,7 +9,8 @@
 namespace app {
 
 Progress::Progress(std::string what, bool quiet)
-    : what_(std::move(what)), visible_(!quiet && isatty(STDERR_FILENO) == 1),
+    : what_(std::move(what)),
+      visible_(!quiet && isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() { clear(); }

@@ -1,19 +1,19 @@
 #include "app/commands/cli.h"
 
-#include "app/commands/commands.h"
 #include "app/base/interrupt.h"
-#include "app/commands/manual.h"
 #include "app/base/message.h"
 #include "app/base/version.h"
+#include "app/commands/commands.h"
+#include "app/commands/manual.h"
 
-#include "render/image/difference.h"
 #include "render/gl/context.h"
+#include "render/image/difference.h"
 #include "sim/core/catalogue.h"
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <cerrno>
 #include <charconv>
@@ -41,11 +41,13 @@ bool read_number(std::string_view word, Number& value) {
 /// "A/B" or "AxB", whole numbers.
 bool read_two(std::string_view text, char between, int& first, int& second) {
   const std::size_t at = text.find(between);
-  return at != std::string_view::npos && read_number(text.substr(0, at), first) && read_number(text.substr(at + 1), second);
+  return at != std::string_view::npos && read_number(text.substr(0, at), first) &&
+         read_number(text.substr(at + 1), second);
 }
 
 void parse_shard(Options& options, const std::string& text) {
-  if (read_two(text, '/', options.shard, options.shards) && 0 <= options.shard && options.shard < options.shards) return;
+  if (read_two(text, '/', options.shard, options.shards) && 0 <= options.shard && options.shard < options.shards)
+    return;
   throw CLI::ValidationError("--shard", fmt::format("'{}' is not i/n with 0 <= i < n", text));
 }
 
@@ -59,7 +61,8 @@ void parse_size(Options& options, const std::string& text) {
 /// A threshold of `compare`.
 void parse_limit(Options& options, const char* name, const std::string& text) {
   double value = 0;
-  if (!read_number(text, value)) throw CLI::ValidationError(std::string("--") + name, fmt::format("'{}' is not a number", text));
+  if (!read_number(text, value))
+    throw CLI::ValidationError(std::string("--") + name, fmt::format("'{}' is not a number", text));
   try {
     render::check_limit(name, value);
   } catch (const std::invalid_argument& error) {
@@ -78,7 +81,8 @@ void parse_figure_size(Options& options, const std::string& text) {
   const bool known = unit == "mm" || unit == "px";
   if (!known || !read(std::string_view(numbers).substr(0, cross), width) ||
       (cross != std::string::npos && !read(std::string_view(numbers).substr(cross + 1), height)))
-    throw CLI::ValidationError("--size", fmt::format("'{}' is no size of a figure, such as 180mm, 180x120mm or 1200x800px", text));
+    throw CLI::ValidationError(
+        "--size", fmt::format("'{}' is no size of a figure, such as 180mm, 180x120mm or 1200x800px", text));
   options.set.push_back(cross == std::string::npos ? fmt::format("figure.size=[{}]", width)
                                                    : fmt::format("figure.size=[{}, {}]", width, height));
   options.set.push_back("figure.unit=" + unit);
@@ -86,26 +90,36 @@ void parse_figure_size(Options& options, const std::string& text) {
 
 constexpr OptionRow option_rows[] = {
     {"to-folder",
-     [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "the folder of the results (default: out/ and the scene's name)"); }},
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output, "the folder of the results (default: out/ and the scene's name)");
+     }},
     {"to-trajectory",
-     [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "the trajectory (default: the scene's name, with .h5)"); }},
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output, "the trajectory (default: the scene's name, with .h5)");
+     }},
     {"to-pictures",
      [](CLI::App& app, Options& o) {
-       app.add_option("-o,--output", o.output, "the folder of frames and movie, or the PNG file of --time (default: beside the trajectory)");
+       app.add_option("-o,--output", o.output,
+                      "the folder of frames and movie, or the PNG file of --time (default: beside the trajectory)");
      }},
     {"to-figure",
      [](CLI::App& app, Options& o) {
-       app.add_option("-o,--output", o.output, "the files, without .png, .svg, .pdf, .csv (default: NAME beside the trajectory)");
+       app.add_option("-o,--output", o.output,
+                      "the files, without .png, .svg, .pdf, .csv (default: NAME beside the trajectory)");
      }},
     {"to-report",
-     [](CLI::App& app, Options& o) { app.add_option("-o,--output", o.output, "the folder of the results (default: reproduce)"); }},
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output, "the folder of the results (default: reproduce)");
+     }},
     {"threads",
      [](CLI::App& app, Options& o) {
-       app.add_option("-j,--jobs", o.jobs, "threads (default: numerics.threads of the scene)")->check(CLI::Range(1, 1024));
+       app.add_option("-j,--jobs", o.jobs, "threads (default: numerics.threads of the scene)")
+           ->check(CLI::Range(1, 1024));
      }},
     {"processes",
      [](CLI::App& app, Options& o) {
-       app.add_option("-j,--jobs", o.jobs, "processes that draw the frames (default: 1); with --time, threads")->check(CLI::Range(1, 1024));
+       app.add_option("-j,--jobs", o.jobs, "processes that draw the frames (default: 1); with --time, threads")
+           ->check(CLI::Range(1, 1024));
      }},
     {"set",
      [](CLI::App& app, Options& o) {
@@ -115,7 +129,9 @@ constexpr OptionRow option_rows[] = {
      }},
     {"set-pictures",
      [](CLI::App& app, Options& o) {
-       app.add_option("--set", o.set, "change a key of view, key_frame, movie or figure: --set view.style=outline (any number of times)")
+       app.add_option(
+              "--set", o.set,
+              "change a key of view, key_frame, movie or figure: --set view.style=outline (any number of times)")
            ->allow_extra_args(false)
            ->type_name("KEY=VALUE");
      }},
@@ -127,10 +143,20 @@ constexpr OptionRow option_rows[] = {
     {"dry-run",
      [](CLI::App& app, Options& o) { app.add_flag("--dry-run", o.dry_run, "print the resolved scene, do nothing"); }},
     {"quiet", [](CLI::App& app, Options& o) { app.add_flag("-q,--quiet", o.quiet, "say nothing but errors"); }},
-    {"resume", [](CLI::App& app, Options& o) { app.add_flag("--resume", o.resume, "continue the trajectory that is there, also to a later time.end"); }},
-    {"force-folder", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "give up results of another scene that this program left in the folder"); }},
-    {"force-file", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace a file that is there, also somebody else's"); }},
-    {"force-trajectory", [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace a trajectory that is there"); }},
+    {"resume",
+     [](CLI::App& app, Options& o) {
+       app.add_flag("--resume", o.resume, "continue the trajectory that is there, also to a later time.end");
+     }},
+    {"force-folder",
+     [](CLI::App& app, Options& o) {
+       app.add_flag("--force", o.force, "give up results of another scene that this program left in the folder");
+     }},
+    {"force-file",
+     [](CLI::App& app, Options& o) {
+       app.add_flag("--force", o.force, "replace a file that is there, also somebody else's");
+     }},
+    {"force-trajectory",
+     [](CLI::App& app, Options& o) { app.add_flag("--force", o.force, "replace a trajectory that is there"); }},
     {"gl",
      [](CLI::App& app, Options& o) {
        app.add_option("--gl", o.gl, "OpenGL by auto, osmesa, egl, egl:N or software")->capture_default_str();
@@ -141,26 +167,29 @@ constexpr OptionRow option_rows[] = {
      }},
     {"shard",
      [](CLI::App& app, Options& o) {
-       app.add_option_function<std::string>("--shard", [&o](const std::string& text) { parse_shard(o, text); },
-                                            "i/n: draw frames i, i + n, i + 2n, ... only")
+       app.add_option_function<std::string>(
+              "--shard", [&o](const std::string& text) { parse_shard(o, text); },
+              "i/n: draw frames i, i + n, i + 2n, ... only")
            ->type_name("I/N");
      }},
     {"style",
      [](CLI::App& app, Options& o) {
-       app.add_option_function<std::string>("--style", [&o](const std::string& s) { o.set.push_back("view.style=" + s); },
-                                            "short for --set view.style=NAME")
+       app.add_option_function<std::string>(
+              "--style", [&o](const std::string& s) { o.set.push_back("view.style=" + s); },
+              "short for --set view.style=NAME")
            ->type_name("NAME");
      }},
     {"size",
      [](CLI::App& app, Options& o) {
-       app.add_option_function<std::string>("--size", [&o](const std::string& text) { parse_size(o, text); },
-                                            "short for --set view.size=[W, H]")
+       app.add_option_function<std::string>(
+              "--size", [&o](const std::string& text) { parse_size(o, text); }, "short for --set view.size=[W, H]")
            ->type_name("WxH");
      }},
     {"format",
      [](CLI::App& app, Options& o) {
-       app.add_option_function<std::string>("--format", [&o](const std::string& s) { o.set.push_back("movie.format=" + s); },
-                                            "short for --set movie.format=NAME")
+       app.add_option_function<std::string>(
+              "--format", [&o](const std::string& s) { o.set.push_back("movie.format=" + s); },
+              "short for --set movie.format=NAME")
            ->type_name("NAME");
      }},
     {"time",
@@ -171,34 +200,37 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) { app.add_option("--time", o.time, "only the saved state nearest to this time"); }},
     {"figure-size",
      [](CLI::App& app, Options& o) {
-       app.add_option_function<std::string>("--size", [&o](const std::string& text) { parse_figure_size(o, text); },
-                                            "of the page: 180mm, 180x120mm or 1200x800px")
+       app.add_option_function<std::string>(
+              "--size", [&o](const std::string& text) { parse_figure_size(o, text); },
+              "of the page: 180mm, 180x120mm or 1200x800px")
            ->type_name("SIZE");
      }},
     {"theme",
      [](CLI::App& app, Options& o) {
-       app.add_option_function<std::string>("--theme", [&o](const std::string& s) { o.set.push_back("figure.theme=" + s); },
-                                            "short for --set figure.theme=NAME: paper, slides, ...")
+       app.add_option_function<std::string>(
+              "--theme", [&o](const std::string& s) { o.set.push_back("figure.theme=" + s); },
+              "short for --set figure.theme=NAME: paper, slides, ...")
            ->type_name("NAME");
      }},
     {"font-size",
      [](CLI::App& app, Options& o) {
-       app.add_option_function<double>("--font-size",
-                                       [&o](double s) { o.set.push_back(fmt::format("figure.font_size={}", s)); },
-                                       "of numbers and legends, points")
+       app.add_option_function<double>(
+              "--font-size", [&o](double s) { o.set.push_back(fmt::format("figure.font_size={}", s)); },
+              "of numbers and legends, points")
            ->type_name("PT");
      }},
     {"export",
      [](CLI::App& app, Options& o) {
-       app.add_option("--csv", o.csv, "write a row per saved state and vesicle; - is standard output")->type_name("FILE");
+       app.add_option("--csv", o.csv, "write a row per saved state and vesicle; - is standard output")
+           ->type_name("FILE");
        app.add_option("--vtk", o.vtk, "write XML PolyData and a .pvd series")->type_name("DIR");
        app.add_option("--ply", o.ply, "write a PLY mesh per saved state and vesicle")->type_name("DIR");
        app.add_option("--latitudes", o.latitudes, "of the meshes; twice as many longitudes")
            ->check(CLI::Range(4, 512))
            ->capture_default_str();
      }},
-    {"quick",
-     [](CLI::App& app, Options& o) { app.add_flag("--quick", o.quick, "low orders and short times: does it run at all"); }},
+    {"quick", [](CLI::App& app,
+                 Options& o) { app.add_flag("--quick", o.quick, "low orders and short times: does it run at all"); }},
     {"full", [](CLI::App& app, Options& o) { app.add_flag("--full", o.full, "also the orders that take hours"); }},
     {"thresholds",
      [](CLI::App& app, Options& o) {
@@ -206,8 +238,8 @@ constexpr OptionRow option_rows[] = {
            ->capture_default_str();
        const render::CompareRule rule;
        render::visit(rule, [&](const char* name, const char* meaning, const double&) {
-         app.add_option_function<std::string>(std::string("--") + name,
-                                              [&o, name](const std::string& text) { parse_limit(o, name, text); }, meaning)
+         app.add_option_function<std::string>(
+                std::string("--") + name, [&o, name](const std::string& text) { parse_limit(o, name, text); }, meaning)
              ->type_name("NUMBER");
        });
      }},
@@ -219,16 +251,16 @@ constexpr OptionRow option_rows[] = {
            ->allow_extra_args(false)
            ->type_name("X,Y,WxH");
      }},
-    {"json", [](CLI::App& app, Options& o) { app.add_flag("--json", o.json, "print one JSON document instead of lines"); }},
-    {"junit", [](CLI::App& app, Options& o) { app.add_option("--junit", o.junit, "write JUnit XML")->type_name("FILE"); }},
+    {"json",
+     [](CLI::App& app, Options& o) { app.add_flag("--json", o.json, "print one JSON document instead of lines"); }},
+    {"junit",
+     [](CLI::App& app, Options& o) { app.add_option("--junit", o.junit, "write JUnit XML")->type_name("FILE"); }},
     {"html",
      [](CLI::App& app, Options& o) {
        app.add_option("--html", o.html, "write a page to look at the differences")->type_name("DIR");
      }},
-    {"diff",
-     [](CLI::App& app, Options& o) {
-       app.add_option("--diff", o.diff, "write difference pictures, x 16")->type_name("DIR");
-     }},
+    {"diff", [](CLI::App& app,
+                Options& o) { app.add_option("--diff", o.diff, "write difference pictures, x 16")->type_name("DIR"); }},
     {"update",
      [](CLI::App& app, Options& o) {
        app.add_flag("--update", o.update, "accept: put what differs or is new in the place of the expected");
@@ -261,8 +293,9 @@ ManualCommand described(const CLI::App& app, std::string name) {
   for (const CLI::Option* option : app.get_options()) {
     ManualEntry entry;
     entry.is_option = !option->get_positional();
-    entry.names = entry.is_option ? option->get_name(false, true)
-                  : option->get_required() ? option->get_name(true) : "[" + option->get_name(true) + "]";
+    entry.names = entry.is_option          ? option->get_name(false, true)
+                  : option->get_required() ? option->get_name(true)
+                                           : "[" + option->get_name(true) + "]";
     const std::string value = option->get_items_expected_max() > 0 ? option->get_type_name() : "";
     entry.value = value.substr(0, value.find_first_of(": "));  // without the range that is checked
     entry.meaning = option->get_description();
@@ -282,7 +315,8 @@ std::vector<ManualCommand> described(const CLI::App& program) {
 }
 
 /// A page that is printed instead of doing anything, as --help is.
-void add_page(CLI::App& program, const char* name, const char* meaning, std::string (*page)(const std::vector<ManualCommand>&)) {
+void add_page(CLI::App& program, const char* name, const char* meaning,
+              std::string (*page)(const std::vector<ManualCommand>&)) {
   program
       .add_flag_callback(
           name,
@@ -303,7 +337,8 @@ void check_command_word(int argc, char** argv) {
     throw std::runtime_error(fmt::format("'{}' is not a command{}", argv[1], sim::suggestion(argv[1], names)));
 }
 
-/// Where a standard stream is closed, the next file opened would take its number, and with it what is meant for the stream.
+/// Where a standard stream is closed, the next file opened would take its number, and with it what is meant for the
+/// stream.
 void occupy_standard_streams() {
   for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd)
     if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != fd) return;  // writing there stays an error

@@ -24,8 +24,8 @@ std::vector<std::string_view> reproduction_names();  ///< the items of `reproduc
 
 struct Command {
   std::string_view name, meaning;
-  std::string_view word;     ///< name of the first positional argument; empty: only files
-  std::string_view files;    ///< name of the files; empty: none
+  std::string_view word;   ///< name of the first positional argument; empty: only files
+  std::string_view files;  ///< name of the files; empty: none
   bool many_files;
   std::string_view options;  ///< the options it takes, separated by spaces
   CommandFunction function;
@@ -36,7 +36,8 @@ inline constexpr Command commands[] = {
      "to-folder threads set steps dry-run quiet gl shader-dir force-folder", run},
     {"simulate", "the simulation alone: writes a trajectory, or continues one with --resume", "", "SCENE", false,
      "to-trajectory threads set steps dry-run quiet resume force-trajectory", simulate},
-    {"render", "the pictures alone: draws a trajectory again with another view or style; several side by side", "", "TRAJECTORY", true,
+    {"render", "the pictures alone: draws a trajectory again with another view or style; several side by side", "",
+     "TRAJECTORY", true,
      "to-pictures processes set-pictures quiet gl shader-dir shard style size format time force-file", render},
     {"figure", "a figure as PNG, SVG and PDF, with its numbers as CSV", "NAME", "TRAJECTORY", true,
      "to-figure set-pictures quiet gl shader-dir figure-size theme font-size force-file", figure},
@@ -47,8 +48,8 @@ inline constexpr Command commands[] = {
      "EXPECTED", "ACTUAL", false, "thresholds ignore json junit html diff update quiet", compare},
     {"reproduce", "recomputes a table or figure of the method's paper; without ITEM, tells which", "ITEM", "", false,
      "to-report quiet gl quick full force-file", reproduce},
-    {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, themes, quantities, parameters", "KIND", "", false, "markdown",
-     list},
+    {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, themes, quantities, parameters", "KIND",
+     "", false, "markdown", list},
 };
 
 }  // namespace app

@@ -1,11 +1,11 @@
 // The command that compares pictures. Its exit status is its answer: 0 same, 1 different, 2 could not compare.
-#include "app/commands/commands.h"
-#include "app/compare/compare_report.h"
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
-#include "app/scene/output.h"
 #include "app/base/printable.h"
 #include "app/base/progress.h"
+#include "app/commands/commands.h"
+#include "app/compare/compare_report.h"
+#include "app/scene/output.h"
 
 #include "sim/core/catalogue.h"
 
@@ -49,7 +49,8 @@ CompareRequest request_of(const Options& options) {
     if (preset.name == options.preset) request.rule = preset.rule;
   }
   if (std::find(names.begin(), names.end(), options.preset) == names.end())
-    throw std::runtime_error(fmt::format("'{}' is no preset{}", options.preset, sim::suggestion(options.preset, names)));
+    throw std::runtime_error(
+        fmt::format("'{}' is no preset{}", options.preset, sim::suggestion(options.preset, names)));
   render::visit(request.rule, [&](std::string_view name, std::string_view, double& value) {
     for (const auto& [given, limit] : options.limits)
       if (given == name) value = limit;
@@ -72,7 +73,8 @@ int compare_as_asked(const Options& options) {
   if (!options.junit.empty()) write_junit(request, all, options.junit);
   const int status = exit_status(all);
   std::string text;
-  if (options.json) text = report_json(request, all);
+  if (options.json)
+    text = report_json(request, all);
   else
     for (const Comparison& c : all)
       if (!options.quiet || c.verdict != Verdict::same) text += report_line(c) + "\n";

@@ -1,18 +1,18 @@
 // Commands that only look: info, export, list.
-#include "app/scene/catalogues.h"
-#include "app/commands/commands.h"
-#include "app/export/csv.h"
-#include "app/pictures/frames.h"
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
-#include "app/export/mesh_export.h"
-#include "app/scene/output.h"
 #include "app/base/owned_files.h"
 #include "app/base/printable.h"
 #include "app/base/progress.h"
+#include "app/commands/commands.h"
+#include "app/export/csv.h"
+#include "app/export/mesh_export.h"
 #include "app/export/reference.h"
-#include "app/scene/scene_file.h"
 #include "app/export/summary.h"
+#include "app/pictures/frames.h"
+#include "app/scene/catalogues.h"
+#include "app/scene/output.h"
+#include "app/scene/scene_file.h"
 
 #include "sim/core/input_file.h"
 
@@ -26,7 +26,8 @@ namespace app {
 int info(const Options& options) {
   const std::filesystem::path& path = options.inputs.front();
   if (std::filesystem::is_directory(path))
-    throw std::runtime_error(fmt::format("'{}' is a folder; give a trajectory, a scene or a frame in it", path.string()));
+    throw std::runtime_error(
+        fmt::format("'{}' is a folder; give a trajectory, a scene or a frame in it", path.string()));
   if (!std::filesystem::exists(path)) throw std::runtime_error(fmt::format("there is no file '{}'", path.string()));
   std::string why;
   std::ifstream in = sim::open_input(path, why);
@@ -35,16 +36,20 @@ int info(const Options& options) {
   start.resize(static_cast<std::size_t>(in.read(start.data(), 8).gcount()));
   // A beginning alone is told to be one.
   const auto begins = [&start](std::string_view signature) { return start.size() > 1 && signature.starts_with(start); };
-  if (begins("\211HDF\r\n\032\n")) fmt::print("{}", trajectory_summary(path));
-  else if (begins("\211PNG\r\n\032\n")) fmt::print("{}", picture_summary(path));
-  else fmt::print("{}", scene_summary(read_scene(path, options.set)));
+  if (begins("\211HDF\r\n\032\n"))
+    fmt::print("{}", trajectory_summary(path));
+  else if (begins("\211PNG\r\n\032\n"))
+    fmt::print("{}", picture_summary(path));
+  else
+    fmt::print("{}", scene_summary(read_scene(path, options.set)));
   return 0;
 }
 
 namespace {
 
 /// Numbers of the states to write, the second not among them: all, or the one nearest to a time.
-std::pair<std::int64_t, std::int64_t> chosen_states(const sim::TrajectoryReader& trajectory, std::optional<double> time) {
+std::pair<std::int64_t, std::int64_t> chosen_states(const sim::TrajectoryReader& trajectory,
+                                                    std::optional<double> time) {
   if (!time) return {0, trajectory.count()};
   require_time(*time, trajectory.count() > 0 ? trajectory.time(trajectory.count() - 1) : std::nan(""));
   std::int64_t nearest = 0;
@@ -72,15 +77,18 @@ int export_states(const Options& options) {
   if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory, first, end));
   struct Kind {
     const std::filesystem::path& folder;
-    std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&, const ExportProgress&);
+    std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&,
+                          const ExportProgress&);
   };
   for (const auto& [folder, write] : {Kind{options.vtk, export_vtk}, Kind{options.ply, export_ply}}) {
     if (folder.empty()) continue;
     Progress progress("exporting", options.quiet);
-    const std::int64_t states = write(trajectory, {folder, first, end, options.latitudes}, files.writer_inside(), [&](std::int64_t k, std::int64_t count) {
-      progress.show(static_cast<double>(k) / static_cast<double>(count), fmt::format("state {} of {}", k + 1, count));
-      return !interrupted();
-    });
+    const std::int64_t states = write(trajectory, {folder, first, end, options.latitudes}, files.writer_inside(),
+                                      [&](std::int64_t k, std::int64_t count) {
+                                        progress.show(static_cast<double>(k) / static_cast<double>(count),
+                                                      fmt::format("state {} of {}", k + 1, count));
+                                        return !interrupted();
+                                      });
     progress.clear();
     if (states < end - first) {
       files.settle();
@@ -114,7 +122,8 @@ int list(const Options& options) {
   }
   names.push_back("parameters");
   if (!options.word.empty())
-    throw std::runtime_error(fmt::format("'{}' is not a catalogue{}", options.word, sim::suggestion(options.word, names)));
+    throw std::runtime_error(
+        fmt::format("'{}' is not a catalogue{}", options.word, sim::suggestion(options.word, names)));
   fmt::print("{:<12} {}\n", "parameters", "every key of a scene file");
   return 0;
 }

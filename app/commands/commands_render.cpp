@@ -1,17 +1,17 @@
 // Commands that draw what has been simulated: render, figure.
-#include "app/commands/commands.h"
-#include "app/figures/figures.h"
 #include "app/base/folder_lock.h"
-#include "app/pictures/frames.h"
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
-#include "app/tables/movie_formats.h"
-#include "app/scene/output.h"
 #include "app/base/owned_files.h"
 #include "app/base/printable.h"
+#include "app/commands/commands.h"
+#include "app/figures/figures.h"
+#include "app/pictures/frames.h"
+#include "app/pictures/workers.h"
+#include "app/scene/output.h"
 #include "app/scene/scene_text.h"
 #include "app/scene/trajectory_scene.h"
-#include "app/pictures/workers.h"
+#include "app/tables/movie_formats.h"
 
 #include <fmt/format.h>
 
@@ -24,13 +24,16 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The scene of a trajectory with changes to its pictures; changes to its physics are refused.
-Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path, const std::vector<std::string>& changes) {
+Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path,
+                  const std::vector<std::string>& changes) {
   if (trajectory.count() == 0) throw std::runtime_error(fmt::format("trajectory '{}' has no state", path.string()));
   const Settings simulated = scene_in(trajectory, path);
   Settings changed = scene_in(trajectory, path, changes);
   if (physics_hash(changed.scene) != physics_hash(simulated.scene))
-    throw std::runtime_error(fmt::format("'{}' has been simulated already: --set can change its view, movie and figures "
-                                         "only", path.string()));
+    throw std::runtime_error(
+        fmt::format("'{}' has been simulated already: --set can change its view, movie and figures "
+                    "only",
+                    path.string()));
   return changed;
 }
 
@@ -59,9 +62,11 @@ int render(const Options& options) {
     return 0;
   }
   // One that this command asks for; a run that ended before its own poster can still be drawn.
-  if (const auto poster = settings.front().movie.poster; poster && poster != scene_in(trajectories.front(), path).movie.poster) {
+  if (const auto poster = settings.front().movie.poster;
+      poster && poster != scene_in(trajectories.front(), path).movie.poster) {
     double end = 0;
-    for (const sim::TrajectoryReader& trajectory : trajectories) end = std::max(end, trajectory.time(trajectory.count() - 1));
+    for (const sim::TrajectoryReader& trajectory : trajectories)
+      end = std::max(end, trajectory.time(trajectory.count() - 1));
     try {
       require_time(*poster, end);
     } catch (const std::invalid_argument& error) {
@@ -81,7 +86,8 @@ int render(const Options& options) {
   }
   std::int64_t by_processes = 0;
   if (options.jobs > 1 && options.shards == 1) {
-    check_movie(find_movie_format(settings.front().movie.format), settings.front().view.size[0], settings.front().view.size[1]);
+    check_movie(find_movie_format(settings.front().movie.format), settings.front().view.size[0],
+                settings.front().view.size[1]);
     const std::optional<std::int64_t> drawn = draw_in_processes(options, folder);
     if (!drawn) return stopped();
     by_processes = *drawn;
@@ -110,7 +116,9 @@ int figure(const Options& options) {
     trajectories.emplace_back(path);
     settings.push_back(scene_of(trajectories.back(), path, changes));
   }
-  const auto folder_of = [](const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); };
+  const auto folder_of = [](const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+  };
   fs::path stem = options.output.empty() ? folder_of(options.inputs.front()) / options.word : options.output;
   for (const char* extension : render::figure_extensions)
     if (stem.extension() == extension) stem.replace_extension();

@@ -1,17 +1,17 @@
 // Commands that simulate: run, simulate.
-#include "app/commands/commands.h"
-#include "app/figures/figures.h"
 #include "app/base/folder_lock.h"
-#include "app/pictures/frames.h"
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
-#include "app/tables/movie_formats.h"
-#include "app/scene/output.h"
 #include "app/base/printable.h"
-#include "app/scene/scene_file.h"
-#include "app/scene/scene_text.h"
+#include "app/commands/commands.h"
 #include "app/export/simulation.h"
 #include "app/export/summary.h"
+#include "app/figures/figures.h"
+#include "app/pictures/frames.h"
+#include "app/scene/output.h"
+#include "app/scene/scene_file.h"
+#include "app/scene/scene_text.h"
+#include "app/tables/movie_formats.h"
 
 #include "render/gl/context.h"
 
@@ -36,10 +36,11 @@ void say(const Options& options, const std::string& line) {
 
 /// Tells how a simulation ended; the exit status.
 int report_end(const SimulationReport& report, const fs::path& trajectory, const Options& options) {
-  const std::string there = fmt::format("{}: {} states, to time {:.6g}", trajectory.string(), report.states, report.time);
+  const std::string there =
+      fmt::format("{}: {} states, to time {:.6g}", trajectory.string(), report.states, report.time);
   if (report.interrupted) {
     tell(fmt::format("interrupted; {}; the same command {}continues", there,
-               options.command == "simulate" ? "with --resume " : ""));
+                     options.command == "simulate" ? "with --resume " : ""));
     return interrupted_status;
   }
   if (!report.stopped.empty()) {
@@ -58,7 +59,8 @@ void protect_scene(const fs::path& scene, const OwnedFiles& files, const Setting
   const std::string text = read_whole_file(scene);
   const bool changes = text != write_scene(settings);
   if (changes && (text != write_scene(read_scene(scene)) || files.foreign("scene.toml")))
-    throw std::runtime_error(fmt::format("the resolved scene would overwrite '{}' itself; give another -o", scene.string()));
+    throw std::runtime_error(
+        fmt::format("the resolved scene would overwrite '{}' itself; give another -o", scene.string()));
 }
 
 /// The plan and the resolved scene: valid as a scene file itself.
@@ -102,8 +104,8 @@ int run(const Options& options) {
   const sim::TrajectoryReader reader(trajectory);
   const FrameReport frames = render_frames({{reader, settings}}, files, options);
   if (frames.interrupted) {
-    tell(fmt::format("interrupted; {} frames are in '{}'; the same command continues",
-               frames.drawn + frames.kept, (folder / "frames").string()));
+    tell(fmt::format("interrupted; {} frames are in '{}'; the same command continues", frames.drawn + frames.kept,
+                     (folder / "frames").string()));
     return interrupted_status;
   }
   say(options, fmt::format("{}: {} frames drawn, {} kept", (folder / "frames").string(), frames.drawn, frames.kept));
@@ -112,10 +114,14 @@ int run(const Options& options) {
   if (!frames.poster_remark.empty()) tell(frames.poster_remark);
   if (!frames.remark.empty())
     tell(fmt::format("{}; the frames are in '{}'", frames.remark, (folder / "frames").string()));
-  const sim::FileWriter write = [&](const fs::path& path, std::string_view bytes) { files.write(path.filename().string(), bytes); };
+  const sim::FileWriter write = [&](const fs::path& path, std::string_view bytes) {
+    files.write(path.filename().string(), bytes);
+  };
   for (const render::FigureParameters& figure : settings.figures) {
     const fs::path stem = folder / (figure.out.empty() ? figure.kind : figure.out);
-    for (const fs::path& file : draw_figure({{reader, settings, {}, trajectory.string()}}, figure, stem, write, options)) say(options, file.string());
+    for (const fs::path& file :
+         draw_figure({{reader, settings, {}, trajectory.string()}}, figure, stem, write, options))
+      say(options, file.string());
   }
   files.settle();
   return frames.movie_failed ? 1 : status;
@@ -123,13 +129,14 @@ int run(const Options& options) {
 
 int simulate(const Options& options) {
   const Settings settings = requested_scene(options);
-  const fs::path file = options.output.empty() ? fs::path(options.inputs.front().stem().string() + ".h5") : options.output;
+  const fs::path file =
+      options.output.empty() ? fs::path(options.inputs.front().stem().string() + ".h5") : options.output;
   const bool exists = fs::exists(file);
   if (exists && !options.resume && !options.force)
     throw std::runtime_error(fmt::format("'{}' exists; --resume continues it, --force replaces it", file.string()));
   if (options.dry_run) return print_plan(settings);
-  const SimulationReport report = exists && options.resume ? simulate_further(settings, file, options)
-                                                           : simulate_new(settings, file, options);
+  const SimulationReport report =
+      exists && options.resume ? simulate_further(settings, file, options) : simulate_new(settings, file, options);
   return report_end(report, file, options);
 }
 

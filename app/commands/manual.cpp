@@ -1,12 +1,12 @@
 #include "app/commands/manual.h"
 
-#include "app/scene/catalogues.h"
+#include "app/base/version.h"
 #include "app/commands/commands.h"
 #include "app/export/reference.h"
-#include "app/base/version.h"
+#include "app/scene/catalogues.h"
 
-#include "render/image/difference.h"
 #include "render/gl/context.h"
+#include "render/image/difference.h"
 
 #include <fmt/format.h>
 
@@ -20,10 +20,14 @@ namespace {
 std::string roff(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    if (c == '\\') out += "\\e";
-    else if (c == '-') out += "\\-";
-    else if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n')) out += fmt::format("\\&{}", c);
-    else out += c;
+    if (c == '\\')
+      out += "\\e";
+    else if (c == '-')
+      out += "\\-";
+    else if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n'))
+      out += fmt::format("\\&{}", c);
+    else
+      out += c;
   }
   return out;
 }
@@ -35,7 +39,9 @@ std::string bold_names(const std::string& names) {
   return out + "\\fR";
 }
 
-std::string paragraph(const std::string& head, const std::string& body) { return fmt::format(".TP\n{}\n{}\n", head, body); }
+std::string paragraph(const std::string& head, const std::string& body) {
+  return fmt::format(".TP\n{}\n{}\n", head, body);
+}
 
 std::string synopsis(const ManualCommand& command) {
   std::string line = fmt::format("\\fBtanktread {}\\fR", roff(command.name));
@@ -48,7 +54,8 @@ std::string entries_of(const ManualCommand& command) {
   std::string text;
   for (const ManualEntry& entry : command.entries) {
     if (!entry.is_option) continue;
-    const std::string head = bold_names(entry.names) + (entry.value.empty() ? "" : fmt::format(" \\fI{}\\fR", roff(entry.value)));
+    const std::string head =
+        bold_names(entry.names) + (entry.value.empty() ? "" : fmt::format(" \\fI{}\\fR", roff(entry.value)));
     text += paragraph(head, roff(entry.meaning));
   }
   return text;
@@ -133,8 +140,10 @@ std::string manual_page(const std::vector<ManualCommand>& offered) {
     if (!command.name.empty()) page += synopsis(command) + "\n";
   page +=
       ".fi\n.SH DESCRIPTION\n"
-      "Tanktread simulates lipid vesicles, closed membranes that bend but do not stretch, in slow viscous flow, and draws\n"
-      "movies and figures of them. A scene is a TOML file; \\fBtanktread run\\fR makes a folder of it with the simulation,\n"
+      "Tanktread simulates lipid vesicles, closed membranes that bend but do not stretch, in slow viscous flow, and "
+      "draws\n"
+      "movies and figures of them. A scene is a TOML file; \\fBtanktread run\\fR makes a folder of it with the "
+      "simulation,\n"
       "its frames, its movie and its figures.\n"
       ".SH COMMANDS\n";
   for (const ManualCommand& command : offered) {
@@ -150,8 +159,9 @@ std::string manual_page(const std::vector<ManualCommand>& offered) {
       "\\fB\\-\\-set\\fR \\fItable.key\\fR=\\fIvalue\\fR changes any key.\n";
   std::string current;
   for (const ReferenceKey& key : reference_keys()) {
-    if (current != key.section) page += fmt::format(".SS \"{0}{1}{2}\"\n{3}.\n", key.list ? "[[" : "[", roff(key.section),
-                                                    key.list ? "]]" : "]", roff(key.section_meaning));
+    if (current != key.section)
+      page += fmt::format(".SS \"{0}{1}{2}\"\n{3}.\n", key.list ? "[[" : "[", roff(key.section), key.list ? "]]" : "]",
+                          roff(key.section_meaning));
     current = key.section;
     page += paragraph(fmt::format("\\fB{}\\fR", roff(key.name)),
                       fmt::format("{}{}{}\n.br\nDefault {}; {}", roff(key.meaning), key.unit.empty() ? "" : ", in ",
@@ -160,14 +170,18 @@ std::string manual_page(const std::vector<ManualCommand>& offered) {
   page += ".SH CATALOGUES\nThe words that scene files and options take; \\fBtanktread list\\fR prints them, too.\n";
   for (const Catalogue& catalogue : catalogues()) {
     page += fmt::format(".SS \"{}\"\n{}.\n", roff(catalogue.name), roff(catalogue.meaning));
-    for (const auto& row : catalogue.rows) page += paragraph(fmt::format("\\fB{}\\fR", roff(row.name)), roff(row.meaning));
+    for (const auto& row : catalogue.rows)
+      page += paragraph(fmt::format("\\fB{}\\fR", roff(row.name)), roff(row.meaning));
   }
   return page +
          ".SH EXIT STATUS\n"
-         "0 after success, 1 after a failure (one sentence on standard error says which), 2 where the command line is wrong,\n"
-         "130 after an interrupt. \\fBtanktread compare\\fR answers 0 for same, 1 for different, 2 where it could not compare.\n"
+         "0 after success, 1 after a failure (one sentence on standard error says which), 2 where the command line is "
+         "wrong,\n"
+         "130 after an interrupt. \\fBtanktread compare\\fR answers 0 for same, 1 for different, 2 where it could not "
+         "compare.\n"
          ".SH FILES\n"
-         "Scenes to begin with are in \\fIshare/tanktread/scenes\\fR, documents in \\fIshare/doc/tanktread\\fR, both below\n"
+         "Scenes to begin with are in \\fIshare/tanktread/scenes\\fR, documents in \\fIshare/doc/tanktread\\fR, both "
+         "below\n"
          "the folder that the program is installed in, such as \\fI/usr\\fR.\n"
          ".SH SEE ALSO\n\\fBffmpeg\\fR(1), which encodes the movies.\n";
 }
@@ -184,8 +198,10 @@ std::string bash_completion(const std::vector<ManualCommand>& offered) {
     first.push_back(command.name);
     options += fmt::format("    {}) options={} ;;\n", command.name, quoted(names));
   }
-  for (const Completion& c : completions_of_options()) values += fmt::format("    {}) words={} ;;\n", c.after, quoted(c.words));
-  for (const Completion& c : completions_of_commands()) words += fmt::format("      {}) words={} ;;\n", c.after, quoted(c.words));
+  for (const Completion& c : completions_of_options())
+    values += fmt::format("    {}) words={} ;;\n", c.after, quoted(c.words));
+  for (const Completion& c : completions_of_commands())
+    words += fmt::format("      {}) words={} ;;\n", c.after, quoted(c.words));
   Words keys;
   for (const ReferenceKey& key : reference_keys()) keys.push_back(fmt::format("{}.{}=", key.section, key.name));
   return fmt::format(R"(# Completion of tanktread for bash, generated by tanktread --bash-completion.

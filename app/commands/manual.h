@@ -12,7 +12,7 @@ struct ManualEntry {
   std::string value;    ///< name of its value: "FILE"; empty: a flag, or a positional argument
   std::string meaning;  ///< no full stop
   bool is_option = true;
-  bool many = false;    ///< may be repeated
+  bool many = false;  ///< may be repeated
 };
 
 struct ManualCommand {

@@ -1,7 +1,7 @@
 // The command reproduce: a catalogue of the paper's tables and figures.
-#include "app/commands/commands.h"
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
+#include "app/commands/commands.h"
 #include "app/reproduce/reproduce_items.h"
 
 #include "sim/core/catalogue.h"
@@ -73,8 +73,8 @@ int reproduce(const Options& options) {
     try {
       const Report report = item.function({options.quick, options.full, here, results, progress});
       progress.clear();
-      const std::string command =
-          fmt::format("tanktread reproduce {}{}{}", name, options.quick ? " --quick" : "", options.full ? " --full" : "");
+      const std::string command = fmt::format("tanktread reproduce {}{}{}", name, options.quick ? " --quick" : "",
+                                              options.full ? " --full" : "");
       const std::vector<std::filesystem::path> files = write_report(report, folder, name, command, write);
       results.settle();
       if (options.quiet) continue;
@@ -85,7 +85,9 @@ int reproduce(const Options& options) {
       progress.clear();
       results.settle();
       tell(fmt::format("interrupted in {}; none of its tables and figures is written{}", name,
-                       end.simulated.empty() ? "" : fmt::format(", the simulation is in '{}' as far as it went", end.simulated.string())));
+                       end.simulated.empty()
+                           ? ""
+                           : fmt::format(", the simulation is in '{}' as far as it went", end.simulated.string())));
       return interrupted_status;
     }
   }

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t most_entries = 1'000'000;                     // of a folder, links followed
+constexpr std::int64_t most_entries = 1'000'000;                       // of a folder, links followed
 constexpr std::uint64_t memory_for_pictures = std::uint64_t{1} << 30;  // bytes, of all pairs under way
 
 std::string lower_case(std::string text) {
@@ -45,7 +45,8 @@ std::pair<Company, fs::path> company_of(const fs::path& path) {
   const std::string inner = path.stem().extension().string();
   const fs::path base = path.parent_path() / (path.stem().stem().string() + path.extension().string());
   if (inner == ".mask") return {Company::mask, base};
-  const bool numbered = inner.starts_with(".alt") && inner.size() > 4 && inner.find_first_not_of("0123456789", 4) == std::string::npos;
+  const bool numbered =
+      inner.starts_with(".alt") && inner.size() > 4 && inner.find_first_not_of("0123456789", 4) == std::string::npos;
   return numbered ? std::pair(Company::alternative, base) : std::pair(Company::none, fs::path());
 }
 
@@ -58,7 +59,8 @@ struct Found {
 using FileId = std::pair<dev_t, ino_t>;
 
 /// `above`: the folders on the way here; one that is met again is a loop of links, and holds nothing new.
-void walk(const fs::path& folder, const fs::path& within, std::vector<FileId>& above, const CompareRequest& request, Found& found) {
+void walk(const fs::path& folder, const fs::path& within, std::vector<FileId>& above, const CompareRequest& request,
+          Found& found) {
   struct stat status {};
   if (::stat(folder.c_str(), &status) == 0) {
     const FileId id{status.st_dev, status.st_ino};
@@ -70,13 +72,17 @@ void walk(const fs::path& folder, const fs::path& within, std::vector<FileId>& a
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (request.look) request.look();
     if (++found.entries > most_entries)
-      throw std::runtime_error(fmt::format("folder '{}' holds more than {} entries, those that its links lead to included",
-                                           folder.string(), most_entries));
+      throw std::runtime_error(
+          fmt::format("folder '{}' holds more than {} entries, those that its links lead to included", folder.string(),
+                      most_entries));
     std::error_code error;
     const fs::path name = within / entry.path().filename();
-    if (fs::is_directory(entry.status(error))) walk(entry.path(), name, above, request, found);
-    else if (is_picture(name)) found.pictures.insert(name);
-    else if (is_other_picture(name)) found.others.insert(name);
+    if (fs::is_directory(entry.status(error)))
+      walk(entry.path(), name, above, request, found);
+    else if (is_picture(name))
+      found.pictures.insert(name);
+    else if (is_other_picture(name))
+      found.others.insert(name);
   }
   above.pop_back();
 }
@@ -87,7 +93,9 @@ Found pictures_in(const fs::path& folder, const CompareRequest& request) {
   try {
     walk(folder, {}, above, request, found);
   } catch (const fs::filesystem_error& error) {
-    throw std::runtime_error(fmt::format("cannot read folder '{}': {}", (error.path1().empty() ? folder : error.path1()).string(), error.code().message()));
+    throw std::runtime_error(fmt::format("cannot read folder '{}': {}",
+                                         (error.path1().empty() ? folder : error.path1()).string(),
+                                         error.code().message()));
   }
   return found;
 }
@@ -134,9 +142,12 @@ std::vector<Pair> pairs_of_folders(const CompareRequest& request, const Found& e
                      !(expected.pictures.contains(of) || actual.pictures.contains(of));
     Pair& pair = pair_named(own ? name : of);
     const fs::path path = request.expected / name;
-    if (own) pair.baselines.insert(pair.baselines.begin(), path);
-    else if (company == Company::mask) pair.mask = path;
-    else pair.baselines.push_back(path);
+    if (own)
+      pair.baselines.insert(pair.baselines.begin(), path);
+    else if (company == Company::mask)
+      pair.mask = path;
+    else
+      pair.baselines.push_back(path);
   }
   for (const fs::path& name : actual.pictures) pair_named(name).actual = request.actual / name;
   std::vector<Pair> pairs;
@@ -160,11 +171,12 @@ Pairs pairs_of(const CompareRequest& request) {
   const Found expected = pictures_in(request.expected, request), actual = pictures_in(request.actual, request);
   Pairs pairs{pairs_of_folders(request, expected, actual), {}};
   if (pairs.all.empty())
-    throw std::runtime_error(fmt::format("neither '{}' nor '{}' holds a PNG picture", request.expected.string(),
-                                         request.actual.string()));
+    throw std::runtime_error(
+        fmt::format("neither '{}' nor '{}' holds a PNG picture", request.expected.string(), request.actual.string()));
   if (const std::size_t n = expected.others.size() + actual.others.size(); n > 0)
-    pairs.passed_over = fmt::format("only PNG pictures are compared: {} of another format {} passed over, such as '{}'", n,
-                                    n == 1 ? "was" : "were", (actual.others.empty() ? expected : actual).others.begin()->string());
+    pairs.passed_over =
+        fmt::format("only PNG pictures are compared: {} of another format {} passed over, such as '{}'", n,
+                    n == 1 ? "was" : "were", (actual.others.empty() ? expected : actual).others.begin()->string());
   return pairs;
 }
 
@@ -179,18 +191,20 @@ std::string reason(const std::exception& error) {
   return dynamic_cast<const std::bad_alloc*>(&error) ? "there is not enough memory to compare it" : error.what();
 }
 
-Comparison compare_with(const CompareRequest& request, const Pair& pair, const render::PngFile& actual, const fs::path& path) {
+Comparison compare_with(const CompareRequest& request, const Pair& pair, const render::PngFile& actual,
+                        const fs::path& path) {
   Comparison result{pair.name, path, pair.actual, pair.baseline, pair.mask, {}, Verdict::same, {}};
   try {
     const render::PngFile expected = render::read_png(path, request.look);
     const int width = actual.image.width, height = actual.image.height;
     if (expected.image.width != width || expected.image.height != height) {
       result.verdict = Verdict::size;
-      result.detail = fmt::format("{} x {} expected, {} x {} made", expected.image.width, expected.image.height, width, height);
+      result.detail =
+          fmt::format("{} x {} expected, {} x {} made", expected.image.width, expected.image.height, width, height);
       return result;
     }
-    result.difference = render::difference(expected, actual, request.rule, ignored_pixels(request, pair.mask, width, height),
-                                           request.look);
+    result.difference = render::difference(expected, actual, request.rule,
+                                           ignored_pixels(request, pair.mask, width, height), request.look);
     if (result.difference.compared == 0) throw std::runtime_error("the mask leaves nothing to compare");
     const std::vector<std::string> objections = render::objections(result.difference, request.rule);
     if (!objections.empty()) result.verdict = Verdict::different;
@@ -305,7 +319,8 @@ Comparisons compare_pictures(const CompareRequest& request, const std::function<
     }
   };
   std::vector<std::jthread> helpers;
-  const std::size_t threads = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), pairs.all.size());
+  const std::size_t threads =
+      std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), pairs.all.size());
   for (std::size_t k = 1; k < threads; ++k) helpers.emplace_back(work);
   work();
   helpers.clear();
@@ -323,7 +338,9 @@ bool stays_within(const fs::path& folder, const fs::path& file) {
   std::error_code error;
   if (fs::is_symlink(fs::symlink_status(file, error))) return false;
   error.clear();  // it need not be there
-  const auto resolved = [&](const fs::path& path) { return error ? path : fs::weakly_canonical(fs::absolute(path), error); };
+  const auto resolved = [&](const fs::path& path) {
+    return error ? path : fs::weakly_canonical(fs::absolute(path), error);
+  };
   const fs::path root = resolved(folder), place = resolved(folder_of(file));
   return !error && std::mismatch(root.begin(), root.end(), place.begin(), place.end()).first == root.end();
 }

@@ -32,7 +32,8 @@ inline constexpr VerdictWords verdict_words[] = {
     {Verdict::same, "same", "the rule is kept", 0},
     {Verdict::different, "different", "the rule is broken", 1},
     {Verdict::size, "size", "width or height differ", 2},
-    {Verdict::unreadable, "unreadable", "a file is damaged or cannot be opened, or the mask leaves nothing to compare", 2},
+    {Verdict::unreadable, "unreadable", "a file is damaged or cannot be opened, or the mask leaves nothing to compare",
+     2},
     {Verdict::missing, "missing", "on the expected side only", 2},
     {Verdict::fresh, "new", "on the actual side only", 2},
 };
@@ -45,9 +46,9 @@ struct Rectangle {
 struct CompareRequest {
   std::filesystem::path expected, actual;  ///< two files or two folders
   render::CompareRule rule;
-  std::filesystem::path mask;              ///< for every picture; empty: none
-  std::vector<Rectangle> ignored;          ///< in every picture
-  std::function<void()> look;              ///< called from time to time, from any thread; throws CompareStopped to stop
+  std::filesystem::path mask;      ///< for every picture; empty: none
+  std::vector<Rectangle> ignored;  ///< in every picture
+  std::function<void()> look;      ///< called from time to time, from any thread; throws CompareStopped to stop
 };
 struct CompareStopped {};
 
@@ -58,7 +59,7 @@ struct Comparison {
   std::filesystem::path mask;              ///< its own; empty: none
   std::string detail;                      ///< violations of the rule, or why there was no comparison
   Verdict verdict = Verdict::same;
-  render::ImageDifference difference;      ///< of a pair that could be compared
+  render::ImageDifference difference;  ///< of a pair that could be compared
 };
 
 struct Comparisons {

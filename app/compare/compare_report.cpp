@@ -1,9 +1,9 @@
 #include "app/compare/compare_report.h"
 
-#include "compare_page.h"
-#include "app/scene/output.h"
 #include "app/base/printable.h"
 #include "app/base/version.h"
+#include "app/scene/output.h"
+#include "compare_page.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view our_mark = "tanktread compare";  // near the start of whatever is written
-constexpr std::size_t page_limit = std::size_t{64} << 20;  // browsers grow slow beyond
+constexpr std::size_t page_limit = std::size_t{64} << 20;   // browsers grow slow beyond
 
 std::int64_t count_of(const std::vector<Comparison>& all, Verdict verdict) {
   return std::count_if(all.begin(), all.end(), [verdict](const Comparison& c) { return c.verdict == verdict; });
@@ -37,8 +37,8 @@ std::string measures(const Comparison& c) {
   return text;
 }
 
-/// Names of files may be any bytes: what is no text becomes a question mark, the rest is escaped by `special`, which answers
-/// nothing for characters that stay as they are.
+/// Names of files may be any bytes: what is no text becomes a question mark, the rest is escaped by `special`, which
+/// answers nothing for characters that stay as they are.
 template <class F>
 std::string escaped(std::string_view text, F&& special) {
   std::string result;
@@ -52,10 +52,13 @@ std::string escaped(std::string_view text, F&& special) {
 }
 
 std::string json_text(std::string_view text) {
-  return '"' + escaped(text, [](char32_t c) -> std::string {
-           if (c == '"' || c == '\\') return std::string("\\") + static_cast<char>(c);
-           return is_control(c) ? fmt::format("\\u{:04x}", static_cast<std::uint32_t>(c)) : std::string();
-         }) + '"';
+  return '"' +
+         escaped(text,
+                 [](char32_t c) -> std::string {
+                   if (c == '"' || c == '\\') return std::string("\\") + static_cast<char>(c);
+                   return is_control(c) ? fmt::format("\\u{:04x}", static_cast<std::uint32_t>(c)) : std::string();
+                 }) +
+         '"';
 }
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
@@ -63,19 +66,26 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 std::string markup_text(std::string_view text) {
   return escaped(text, [](char32_t c) -> std::string {
     switch (c) {
-      case '&': return "&amp;";
-      case '<': return "&lt;";
-      case '>': return "&gt;";
-      case '"': return "&quot;";
-      case '\'': return "&#39;";
-      default: return is_control(c) ? "?" : std::string();
+      case '&':
+        return "&amp;";
+      case '<':
+        return "&lt;";
+      case '>':
+        return "&gt;";
+      case '"':
+        return "&quot;";
+      case '\'':
+        return "&#39;";
+      default:
+        return is_control(c) ? "?" : std::string();
     }
   });
 }
 
 std::string figure(std::string_view role, std::string_view caption, std::string_view bytes) {
-  return fmt::format("<figure><img class=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
-                     role, role, base64(bytes), caption);
+  return fmt::format(
+      "<figure><img class=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
+      role, role, base64(bytes), caption);
 }
 
 /// The difference picture of a pair that could be compared; empty when a file has gone or changed since.
@@ -83,7 +93,8 @@ std::string difference_png(const CompareRequest& request, const Comparison& c) {
   try {
     const render::Image expected = render::read_png(c.expected).image, actual = render::read_png(c.actual).image;
     const render::Ignored ignored = ignored_pixels(request, c.mask, actual.width, actual.height);
-    return render::png_bytes(render::difference_image(expected, actual, 16, ignored), {{"Software", std::string(our_mark)}});
+    return render::png_bytes(render::difference_image(expected, actual, 16, ignored),
+                             {{"Software", std::string(our_mark)}});
   } catch (const std::exception&) {
     return {};
   }
@@ -109,9 +120,10 @@ std::string article(const CompareRequest& request, const Comparison& c, std::siz
       pictures += figure("difference", "difference × 16", bytes);
   if (pictures.size() > room) pictures = "<p>Left out: the page would become too large.</p>\n";
   const std::string numbers = pair ? "; " + measures(c) : std::string();
-  return fmt::format("<article{}>\n<h2>{}</h2>\n<p><b class=\"{}\">{}</b> {}</p>\n<div class=\"pictures\">\n{}</div>\n</article>\n",
-                     pair ? " class=\"pair\"" : "", markup_text(c.name), words_of(c.verdict).name, words_of(c.verdict).name,
-                     markup_text(c.detail + numbers), pictures);
+  return fmt::format(
+      "<article{}>\n<h2>{}</h2>\n<p><b class=\"{}\">{}</b> {}</p>\n<div class=\"pictures\">\n{}</div>\n</article>\n",
+      pair ? " class=\"pair\"" : "", markup_text(c.name), words_of(c.verdict).name, words_of(c.verdict).name,
+      markup_text(c.detail + numbers), pictures);
 }
 
 void make_folder(const fs::path& folder) {
@@ -134,19 +146,20 @@ void check_place(const CompareRequest& request, const std::vector<Comparison>& a
   if (!fs::is_regular_file(path, error)) return;
   const auto refuse_if_same = [&](const fs::path& compared) {
     if (!compared.empty() && fs::equivalent(path, compared, error))
-      throw std::runtime_error(fmt::format("'{}' is one of the compared files, which a report must not replace", path.string()));
+      throw std::runtime_error(
+          fmt::format("'{}' is one of the compared files, which a report must not replace", path.string()));
   };
   refuse_if_same(request.mask);
   for (const Comparison& c : all)
     for (const fs::path* compared : {&c.expected, &c.actual, &c.baseline, &c.mask}) refuse_if_same(*compared);
   if (fs::file_size(path, error) > 0 && !is_ours(path))
-    throw std::runtime_error(fmt::format("'{}' was not written by compare and is not replaced: remove it, or give another name",
-                                         path.string()));
+    throw std::runtime_error(fmt::format(
+        "'{}' was not written by compare and is not replaced: remove it, or give another name", path.string()));
 }
 
 /// The same for a file in a folder of ours.
-void write_into(const CompareRequest& request, const std::vector<Comparison>& all, const fs::path& folder, const fs::path& path,
-                const std::string& bytes) {
+void write_into(const CompareRequest& request, const std::vector<Comparison>& all, const fs::path& folder,
+                const fs::path& path, const std::string& bytes) {
   if (!stays_within(folder, path))
     throw std::runtime_error(fmt::format("a link leads from '{}' to somewhere else", path.string()));
   check_place(request, all, path);
@@ -183,7 +196,9 @@ std::string report_json(const CompareRequest& request, const std::vector<Compari
     add(counts, fmt::format("{}: {}", json_text(w.name), count_of(all, w.verdict)));
   for (const Comparison& c : all) {
     std::string fields;
-    const auto field = [&](const char* name, const std::string& value) { add(fields, fmt::format("\"{}\": {}", name, value)); };
+    const auto field = [&](const char* name, const std::string& value) {
+      add(fields, fmt::format("\"{}\": {}", name, value));
+    };
     field("name", json_text(c.name));
     field("verdict", json_text(words_of(c.verdict).name));
     field("detail", json_text(c.detail));
@@ -201,10 +216,11 @@ std::string report_json(const CompareRequest& request, const std::vector<Compari
     }
     pictures += fmt::format("{}    {{{}}}", pictures.empty() ? "" : ",\n", fields);
   }
-  return fmt::format("{{\n  \"program\": {},\n  \"expected\": {},\n  \"actual\": {},\n  \"rule\": {{{}}},\n  \"status\": {},\n"
-                     "  \"counts\": {{{}}},\n  \"pictures\": [\n{}\n  ]\n}}\n",
-                     json_text("tanktread " + version()), json_text(request.expected.string()),
-                     json_text(request.actual.string()), rule, exit_status(all), counts, pictures);
+  return fmt::format(
+      "{{\n  \"program\": {},\n  \"expected\": {},\n  \"actual\": {},\n  \"rule\": {{{}}},\n  \"status\": {},\n"
+      "  \"counts\": {{{}}},\n  \"pictures\": [\n{}\n  ]\n}}\n",
+      json_text("tanktread " + version()), json_text(request.expected.string()), json_text(request.actual.string()),
+      rule, exit_status(all), counts, pictures);
 }
 
 std::string report_junit(const std::vector<Comparison>& all) {
@@ -223,15 +239,17 @@ std::string report_junit(const std::vector<Comparison>& all) {
                          markup_text(c.detail), markup_text(report_line(c)), element);
   }
   const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"", all.size(), failures, errors);
-  return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite name=\"tanktread compare\" {} "
-                     "skipped=\"0\" time=\"0\">\n{}  </testsuite>\n</testsuites>\n", counts, counts, cases);
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite name=\"tanktread compare\" {} "
+      "skipped=\"0\" time=\"0\">\n{}  </testsuite>\n</testsuites>\n",
+      counts, counts, cases);
 }
 
 void check_difference_folder(const CompareRequest& request, const fs::path& folder) {
   for (const fs::path* compared : {&request.expected, &request.actual})
     if (fs::is_directory(*compared) && stays_within(*compared, fs::weakly_canonical(folder) / "x"))
-      throw std::runtime_error(fmt::format("--diff '{}' lies in '{}', whose pictures are compared: give another folder", folder.string(),
-                                           compared->string()));
+      throw std::runtime_error(fmt::format("--diff '{}' lies in '{}', whose pictures are compared: give another folder",
+                                           folder.string(), compared->string()));
 }
 
 void write_differences(const CompareRequest& request, const std::vector<Comparison>& all, const fs::path& folder) {
@@ -270,7 +288,8 @@ void write_page(const CompareRequest& request, const std::vector<Comparison>& al
                         count_of(all, Verdict::same), equal);
   std::string rule;
   render::visit(request.rule, [&](std::string_view name, std::string_view meaning, const double& value) {
-    if (std::isfinite(value) && (name != "ppd" || std::isfinite(std::min({request.rule.flip_mean, request.rule.flip_max, request.rule.flip_spot}))))
+    if (std::isfinite(value) && (name != "ppd" || std::isfinite(std::min({request.rule.flip_mean, request.rule.flip_max,
+                                                                          request.rule.flip_spot}))))
       rule += fmt::format("<tr><td>{}</td><td>{:g}</td><td>{}</td></tr>\n", name, value, meaning);
   });
   const std::pair<std::string_view, std::string> places[] = {{"{{totals}}", report_totals(all)},
@@ -286,7 +305,8 @@ void write_page(const CompareRequest& request, const std::vector<Comparison>& al
     const std::size_t at = std::min(rest.find("{{"), rest.size());
     page += rest.substr(0, at);
     rest.remove_prefix(at);
-    const auto* place = std::find_if(std::begin(places), std::end(places), [&](const auto& p) { return rest.starts_with(p.first); });
+    const auto* place =
+        std::find_if(std::begin(places), std::end(places), [&](const auto& p) { return rest.starts_with(p.first); });
     const bool known = place != std::end(places);
     page += known ? place->second : std::string(rest.substr(0, 1));
     rest.remove_prefix(std::min(rest.size(), known ? place->first.size() : 1));

@@ -10,7 +10,9 @@ std::vector<CsvColumn> csv_columns() {
   std::vector<CsvColumn> columns{{"step", "number of the step that ended here"},
                                  {"time", "time of the state"},
                                  {"vesicle", "number of the vesicle, from 0"}};
-  visit(sim::VesicleMeasures{}, [&](const char* name, const char* meaning, double) { columns.push_back({name, meaning}); });
+  visit(sim::VesicleMeasures{}, [&](const char* name, const char* meaning, double) {
+    columns.push_back({name, meaning});
+  });
   return columns;
 }
 

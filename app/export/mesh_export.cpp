@@ -1,12 +1,12 @@
 #include "app/export/mesh_export.h"
 
-#include "app/scene/output.h"
 #include "app/base/version.h"
+#include "app/scene/output.h"
 
 #include "render/scene/mesh.h"
 #include "render/scene/surface.h"
-#include "sim/surface/geometry.h"
 #include "sim/layers/plans.h"
+#include "sim/surface/geometry.h"
 
 #include <fmt/format.h>
 
@@ -86,8 +86,8 @@ std::string data_array(const char* type, std::string_view name, int components, 
   const std::uint64_t size = values.size() * sizeof(T);
   std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
   bytes += bytes_of(values);
-  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n", type,
-                     name, components, base64(bytes));
+  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n",
+                     type, name, components, base64(bytes));
 }
 
 void append_rows(std::vector<float>& to, const sim::Matrix& rows, Eigen::Index first, Eigen::Index count) {
@@ -104,7 +104,8 @@ std::string vtk_text(const sim::State& state, Sampler& sampler) {
     vesicles.push_back(sampler.sample(state.vesicles[v], v));
     for (Eigen::Index i = 0; i < vesicles.back().points.rows(); ++i)
       for (Eigen::Index c = 0; c < 3; ++c) points.push_back(vesicles.back().points(i, c));
-    for (const std::uint32_t corner : sampler.plan().indices()) corners.push_back(before + static_cast<std::int32_t>(corner));
+    for (const std::uint32_t corner : sampler.plan().indices())
+      corners.push_back(before + static_cast<std::int32_t>(corner));
   }
   for (std::size_t end = 3; end <= corners.size(); end += 3) ends.push_back(static_cast<std::int32_t>(end));
   std::string fields;
@@ -116,9 +117,12 @@ std::string vtk_text(const sim::State& state, Sampler& sampler) {
     column += field.components;
   }
   return fmt::format(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-      "<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n"
-      "</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n"
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n"
+      "<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+      "format=\"ascii\">{}</DataArray>\n"
+      "</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+      "NumberOfPolys=\"{}\">\n"
       "<PointData Scalars=\"tension\" Vectors=\"velocity\" Normals=\"normal\">\n{}</PointData>\n<Points>\n{}</Points>\n"
       "<Polys>\n{}{}</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n",
       state.time, points.size() / 3, ends.size(), fields, data_array("Float64", "Points", 3, points),
@@ -133,9 +137,10 @@ std::string ply_text(const sim::VesicleState& v, std::size_t number, double time
                : field.components == 1                  ? fmt::format("property float {}\n", field.name)
                                                         : fmt::format("property float {}_{}\n", field.name, "xyz"[c]);
   const auto indices = sampler.plan().indices();
-  std::string text = fmt::format("ply\nformat binary_little_endian 1.0\ncomment tanktread {}, vesicle {} at time {}\n"
-                                 "element vertex {}\n{}element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                                 version(), number, time, sampler.plan().vertices(), names, indices.size() / 3);
+  std::string text = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment tanktread {}, vesicle {} at time {}\n"
+      "element vertex {}\n{}element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      version(), number, time, sampler.plan().vertices(), names, indices.size() / 3);
   const Sampled sampled = sampler.sample(v, number);
   std::vector<float> row;
   for (Eigen::Index i = 0; i < sampled.points.rows(); ++i) {
@@ -161,7 +166,9 @@ void make_folder(const fs::path& folder) {
 }  // namespace
 
 std::string vtk_name(std::int64_t state) { return fmt::format("state-{:06}.vtp", state); }
-std::string ply_name(std::size_t vesicle, std::int64_t state) { return fmt::format("vesicle-{}-{:06}.ply", vesicle, state); }
+std::string ply_name(std::size_t vesicle, std::int64_t state) {
+  return fmt::format("vesicle-{}-{:06}.ply", vesicle, state);
+}
 
 std::int64_t export_vtk(const sim::TrajectoryReader& trajectory, const MeshExport& how, const sim::FileWriter& write,
                         const ExportProgress& progress) {
@@ -176,8 +183,9 @@ std::int64_t export_vtk(const sim::TrajectoryReader& trajectory, const MeshExpor
     series += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", state.time, name);
   }
   write(how.folder / vtk_series,
-                   "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n" +
-                       series + "</Collection>\n</VTKFile>\n");
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+        "byte_order=\"LittleEndian\">\n<Collection>\n" +
+            series + "</Collection>\n</VTKFile>\n");
   return k - how.first;
 }
 

@@ -13,7 +13,7 @@ namespace app {
 struct MeshExport {
   std::filesystem::path folder;
   std::int64_t first = 0, end = 0;  ///< indices of the states: first, ..., end - 1
-  int latitudes = 64;  ///< triangles per vesicle: 4 x latitudes x (latitudes - 1)
+  int latitudes = 64;               ///< triangles per vesicle: 4 x latitudes x (latitudes - 1)
 };
 
 /// Fields of every point, in the order of the files.

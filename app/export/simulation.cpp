@@ -3,9 +3,9 @@
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
 #include "app/base/progress.h"
+#include "app/base/version.h"
 #include "app/scene/scene_text.h"
 #include "app/scene/trajectory_scene.h"
-#include "app/base/version.h"
 
 #include "sim/core/result_file.h"
 #include "sim/stepping/simulate.h"
@@ -32,8 +32,8 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   Progress progress("simulating", options.quiet);
   sim::SimulationObserver observer;
   observer.on_step = [&](const sim::Dynamics& d, const sim::StepRecord& record) {
-    const double share = options.steps ? static_cast<double>(d.step) / static_cast<double>(*options.steps)
-                                       : d.time / scene.time.end;
+    const double share =
+        options.steps ? static_cast<double>(d.step) / static_cast<double>(*options.steps) : d.time / scene.time.end;
     progress.show(share, fmt::format("step {:.0f}, t = {:.4g}", record.step, record.time));
   };
   observer.on_warning = [&](const std::string& warning) {
@@ -62,7 +62,8 @@ SimulationReport simulate_new(const Settings& settings, const std::filesystem::p
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
     if (error)
-      throw std::runtime_error(fmt::format("cannot make folder '{}': {}", path.parent_path().string(), error.message()));
+      throw std::runtime_error(
+          fmt::format("cannot make folder '{}': {}", path.parent_path().string(), error.message()));
   }
   return simulate(settings, path, false, false, 0, options, ready);
 }
@@ -78,8 +79,10 @@ std::vector<SceneDifference> checked_differences(const Settings& settings, const
                                          path.string(), text_of(differences)));
   const std::int64_t states = reader.count();
   if (const double last = states > 0 ? reader.time(states - 1) : 0; last > settings.scene.time.end * (1 + 1e-9))
-    throw std::runtime_error(fmt::format("'{}' has states up to time {:.6g}, beyond time.end = {:.6g}; give another -o, or "
-                                         "--force to replace it", path.string(), last, settings.scene.time.end));
+    throw std::runtime_error(
+        fmt::format("'{}' has states up to time {:.6g}, beyond time.end = {:.6g}; give another -o, or "
+                    "--force to replace it",
+                    path.string(), last, settings.scene.time.end));
   return differences;
 }
 

@@ -11,11 +11,11 @@
 namespace app {
 
 struct SimulationReport {
-  std::int64_t states = 0;     ///< in the file
-  double time = 0;             ///< of the last state
+  std::int64_t states = 0;  ///< in the file
+  double time = 0;          ///< of the last state
   bool already_finished = false;
   bool interrupted = false;
-  std::string stopped;         ///< why the simulation stopped early; empty: it did not
+  std::string stopped;  ///< why the simulation stopped early; empty: it did not
 };
 
 /// A new file; an existing trajectory is replaced. `ready` is called when the scene can be simulated, before anything

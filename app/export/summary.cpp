@@ -1,7 +1,7 @@
 #include "app/export/summary.h"
 
-#include "app/pictures/frames.h"
 #include "app/base/printable.h"
+#include "app/pictures/frames.h"
 #include "app/scene/scene_text.h"
 
 #include "render/image/image.h"
@@ -18,7 +18,9 @@ namespace app {
 namespace {
 
 /// Intervals of length `part` that fill `whole`, a last shorter one included.
-std::int64_t intervals(double whole, double part) { return static_cast<std::int64_t>(std::ceil(whole / part * (1 - 1e-12))); }
+std::int64_t intervals(double whole, double part) {
+  return static_cast<std::int64_t>(std::ceil(whole / part * (1 - 1e-12)));
+}
 
 std::string counted(std::int64_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
@@ -41,8 +43,10 @@ std::vector<Extreme> extremes(const std::vector<sim::StepRecord>& steps) {
   for (const sim::StepRecord& step : steps) {
     visit(step, [&](const char* name, const char*, double value) {
       const std::string_view word(name);
-      if (word == "gap") gap = std::min(gap, value);
-      else if (word != "step" && word != "time" && std::isfinite(value)) note(name, value);
+      if (word == "gap")
+        gap = std::min(gap, value);
+      else if (word != "step" && word != "time" && std::isfinite(value))
+        note(name, value);
     });
     for (const sim::VesicleStep& vesicle : step.vesicles)
       visit(vesicle, [&](const char* name, const char*, double value) { note(name, value); });
@@ -90,7 +94,8 @@ std::string trajectory_summary(const std::filesystem::path& path) {
   const sim::TrajectoryHeader& header = trajectory.header();
   const sim::TrajectoryLayout& layout = trajectory.layout();
   const std::int64_t states = trajectory.count();
-  std::string text = fmt::format("file       {}, a trajectory, format {}\n", printable(path.string()), sim::trajectory_format);
+  std::string text =
+      fmt::format("file       {}, a trajectory, format {}\n", printable(path.string()), sim::trajectory_format);
   text += fmt::format("program    tanktread {}, {}\n", printable(header.program), printable(header.build));
   text += fmt::format("vesicles   {}, order at most {}, labels at most {}\n", layout.vesicles, layout.order,
                       layout.label_order);
@@ -110,7 +115,8 @@ std::string trajectory_summary(const std::filesystem::path& path) {
 
 std::string picture_summary(const std::filesystem::path& path) {
   const render::PngFile file = render::read_png(path);
-  std::string text = fmt::format("file       {}, a picture, {} x {}\n", printable(path.string()), file.image.width, file.image.height);
+  std::string text =
+      fmt::format("file       {}, a picture, {} x {}\n", printable(path.string()), file.image.width, file.image.height);
   for (const auto& [key, value] : file.text) text += fmt::format("{:<10} {}\n", printable(key), printable(value));
   return text;
 }

@@ -94,14 +94,18 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
     case render::FigureNeeds::all_states:
       for (std::size_t k = 0; k < times.size(); ++k) take({k});
       break;
-    case render::FigureNeeds::instants: take(render::chosen_states(times, parameters)); break;
+    case render::FigureNeeds::instants:
+      take(render::chosen_states(times, parameters));
+      break;
     case render::FigureNeeds::stills:
       take(render::chosen_states(times, parameters));
       add_stills(input, first, options);
       break;
     case render::FigureNeeds::flow:
-      if (parameters.times.empty()) take({times.size() - 1});
-      else take({render::chosen_states(times, parameters).front()});
+      if (parameters.times.empty())
+        take({times.size() - 1});
+      else
+        take({render::chosen_states(times, parameters).front()});
       add_flow(input, first);
       break;
   }
@@ -109,8 +113,9 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
 }
 
 std::vector<std::filesystem::path> draw_figure(const std::vector<FigureSource>& sources,
-                                               const render::FigureParameters& parameters, const std::filesystem::path& stem,
-                                               const sim::FileWriter& write, const Options& options) {
+                                               const render::FigureParameters& parameters,
+                                               const std::filesystem::path& stem, const sim::FileWriter& write,
+                                               const Options& options) {
   return render::write_figure(make_figure(sources, parameters, options), stem, {}, write);
 }
 

@@ -17,6 +17,7 @@ render::Figure make_figure(const std::vector<FigureSource>&, const render::Figur
 
 /// stem.png, .svg, .pdf and .csv, written by `write`; returns their paths.
 std::vector<std::filesystem::path> draw_figure(const std::vector<FigureSource>&, const render::FigureParameters&,
-                                               const std::filesystem::path& stem, const sim::FileWriter& write, const Options&);
+                                               const std::filesystem::path& stem, const sim::FileWriter& write,
+                                               const Options&);
 
 }  // namespace app

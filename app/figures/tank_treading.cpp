@@ -1,8 +1,8 @@
 #include "app/figures/tank_treading.h"
 
 #include "render/scene/section.h"
-#include "sim/sphere/basis.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/sphere/basis.h"
 #include "sim/sphere/legendre.h"
 #include "sim/surface/shapes.h"
 
@@ -27,7 +27,8 @@ std::vector<double> contrasts_of(const std::vector<SteadyPoint>& points) {
   return all;
 }
 
-/// Values at the turning points of a curve, the first and last value left out; what is smaller than `least` is no swing.
+/// Values at the turning points of a curve, the first and last value left out; what is smaller than `least` is no
+/// swing.
 std::vector<double> turning_points(const std::vector<double>& values, double least) {
   std::vector<double> turns;
   double low = values.front(), high = values.front();  // since the last turn
@@ -54,10 +55,14 @@ double unwrapped(double angle, double before) { return angle + 180 * std::round(
 
 std::string_view text_of(Motion motion) {
   switch (motion) {
-    case Motion::tank_treading: return "tank-treads";
-    case Motion::swinging: return "swings";
-    case Motion::tumbling: return "tumbles";
-    case Motion::untold: break;
+    case Motion::tank_treading:
+      return "tank-treads";
+    case Motion::swinging:
+      return "swings";
+    case Motion::tumbling:
+      return "tumbles";
+    case Motion::untold:
+      break;
   }
   return "has not settled";
 }
@@ -81,9 +86,9 @@ Motion motion_of(const std::vector<double>& times, const std::vector<double>& de
 
 const std::vector<LiteraturePoint>& literature_angles() {
   static const std::vector<LiteraturePoint> points{
-      {1, 0.702, 0.087, 0.002, "Kraus et al. 1996"},     {1, 0.898, 0.155, 0.002, "Kraus et al. 1996"},
-      {1, 0.974, 0.206, 0.002, "Kraus et al. 1996"},     {2.7, 0.960, 0.152, 0.002, "Zhao, Shaqfeh 2009"},
-      {2.7, 0.901, 0.110, 0.002, "Zhao, Shaqfeh 2009"},  {5.6, 0.980, 0.131, 0.002, "Zhao, Shaqfeh 2009"},
+      {1, 0.702, 0.087, 0.002, "Kraus et al. 1996"},    {1, 0.898, 0.155, 0.002, "Kraus et al. 1996"},
+      {1, 0.974, 0.206, 0.002, "Kraus et al. 1996"},    {2.7, 0.960, 0.152, 0.002, "Zhao, Shaqfeh 2009"},
+      {2.7, 0.901, 0.110, 0.002, "Zhao, Shaqfeh 2009"}, {5.6, 0.980, 0.131, 0.002, "Zhao, Shaqfeh 2009"},
       {5.6, 0.939, 0.068, 0.002, "Zhao, Shaqfeh 2009"}};
   return points;
 }
@@ -222,7 +227,8 @@ void add_unsettled(Panels& panels, const std::vector<SteadyPoint>& points, doubl
 }
 
 /// Points of one contrast, a curve a source.
-void add_literature(render::Plot& plot, const std::vector<LiteraturePoint>& all, double contrast, std::size_t colour, bool named) {
+void add_literature(render::Plot& plot, const std::vector<LiteraturePoint>& all, double contrast, std::size_t colour,
+                    bool named) {
   std::string_view source;
   for (const LiteraturePoint& l : all) {
     if (l.viscosity_contrast != contrast) continue;

@@ -28,8 +28,8 @@ struct SteadyPoint {
   double frequency = 0;  ///< of the membrane around the section through the centroid, 2 pi / period / rate
   Motion motion = Motion::tank_treading;
 };
-/// Of a vesicle that tank-treads in a shear flow of that rate, from one state: the period is the integral of the arc length
-/// over the speed along the section y = y of the centroid.
+/// Of a vesicle that tank-treads in a shear flow of that rate, from one state: the period is the integral of the arc
+/// length over the speed along the section y = y of the centroid.
 SteadyPoint steady_point(sim::Plans&, const sim::VesicleState&, double viscosity_contrast, double rate);
 
 /// Keller and Skalak 1982 for a prolate spheroid (closed form, approximate physics); frequency 0 and angle NaN where

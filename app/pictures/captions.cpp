@@ -27,8 +27,8 @@ double flow_rate(const sim::Scene& scene, double area_radius) {
 }
 
 TimeUnit time_unit(const sim::Scene& scene) {
-  const bool shear = scene.flows.size() == 1 && scene.flows[0].kind == "shear" && scene.flows[0].time_factor == "constant" &&
-                     scene.flows[0].rate != 0;
+  const bool shear = scene.flows.size() == 1 && scene.flows[0].kind == "shear" &&
+                     scene.flows[0].time_factor == "constant" && scene.flows[0].rate != 0;
   return shear ? TimeUnit{"γ̇t", std::abs(scene.flows[0].rate)} : TimeUnit{};
 }
 
@@ -47,7 +47,8 @@ TimeFormat time_format(const sim::Scene& scene, double spacing, double end) {
 std::string time_caption(const sim::Scene& scene, double time, const TimeFormat& format) {
   const TimeUnit unit = time_unit(scene);
   std::string number = fmt::format("{:.{}f}", unit.factor * time * std::pow(10.0, -format.exponent), format.places);
-  if (format.exponent != 0) number += fmt::format("·10^{{{}{}}}", format.exponent < 0 ? "−" : "", std::abs(format.exponent));
+  if (format.exponent != 0)
+    number += fmt::format("·10^{{{}{}}}", format.exponent < 0 ? "−" : "", std::abs(format.exponent));
   return fmt::format("{} = {}", unit.symbol, number);
 }
 
@@ -73,7 +74,9 @@ std::string parameter_caption(const sim::Scene& scene, double area_radius, doubl
     return v.bending_modulus > 0 ? rate * std::pow(area_radius, 3) / v.bending_modulus : 0;
   });
   add("Bo", [&](const sim::VesicleParameters& v) {
-    return v.bending_modulus > 0 ? std::abs(v.density_difference) * gravity * std::pow(area_radius, 4) / v.bending_modulus : 0;
+    return v.bending_modulus > 0
+               ? std::abs(v.density_difference) * gravity * std::pow(area_radius, 4) / v.bending_modulus
+               : 0;
   });
   add("λ", [](const sim::VesicleParameters& v) { return v.viscosity_contrast; });
   const sim::VesicleParameters& first = scene.vesicles.front();

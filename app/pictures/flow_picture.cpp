@@ -29,9 +29,12 @@ struct Net {
   sim::Vector distance;  ///< to the nearest membrane, or less
 
   Net(const render::Range& across, const render::Range& up, double size)
-      : step(size), x(across.low - border * size), y(up.low - border * size),
+      : step(size),
+        x(across.low - border * size),
+        y(up.low - border * size),
         columns(static_cast<int>(std::ceil(across.size() / size)) + 2 * border + 1),
-        rows(static_cast<int>(std::ceil(up.size() / size)) + 2 * border + 1), velocity(Eigen::Index{columns} * rows, 2),
+        rows(static_cast<int>(std::ceil(up.size() / size)) + 2 * border + 1),
+        velocity(Eigen::Index{columns} * rows, 2),
         distance(Eigen::Index{columns} * rows) {}
 
   Eigen::Index index(int column, int row) const { return Eigen::Index{row} * columns + column; }
@@ -53,8 +56,8 @@ struct Net {
       for (int j = 0; j < 2; ++j) nearest = std::min(nearest, distance[index(c + i, r + j)]);
     if (nearest < 2.9 * step) return {};  // from a corner of the cell to the farthest of the nodes: sqrt(8) steps
     const auto weights = [](double t) {
-      return std::array<double, 4>{-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
-                                   (t + 1) * t * (t - 1) / 6};
+      return std::array<double, 4>{-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2,
+                                   -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6};
     };
     const auto wx = weights(a - c), wy = weights(b - r);
     Vec2 v = Vec2::Zero();
@@ -65,11 +68,15 @@ struct Net {
   }
 };
 
-/// Velocity in the plane at any point of a window: a coarse net, a fine one, near a membrane the layer potentials themselves.
+/// Velocity in the plane at any point of a window: a coarse net, a fine one, near a membrane the layer potentials
+/// themselves.
 class PlaneSampler {
  public:
   PlaneSampler(const sim::FlowField& field, const FlowRequest& request, double step)
-      : field_(field), request_(request), coarse_(request.x, request.y, step), fine_(request.x, request.y, step / finer) {
+      : field_(field),
+        request_(request),
+        coarse_(request.x, request.y, step),
+        fine_(request.x, request.y, step / finer) {
     std::vector<Eigen::Index> all(static_cast<std::size_t>(coarse_.distance.size()));
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<Eigen::Index>(k);
     sample(coarse_, all);
@@ -99,7 +106,8 @@ class PlaneSampler {
       for (int c = 0; c < columns; ++c) speed(rows - 1 - r, c) = fine_.velocity.row(fine_.index(c + b, r + b)).norm();
     const double half = fine_.step / 2, x = fine_.x + b * fine_.step, y = fine_.y + b * fine_.step;
     return {speed,
-            {render::Range{x - half, x + (columns - 1) * fine_.step + half}, render::Range{y - half, y + (rows - 1) * fine_.step + half}}};
+            {render::Range{x - half, x + (columns - 1) * fine_.step + half},
+             render::Range{y - half, y + (rows - 1) * fine_.step + half}}};
   }
 
  private:
@@ -178,7 +186,8 @@ FlowRequest flow_request(sim::Plans& plans, const sim::State& state, const rende
   return request;
 }
 
-render::FlowPicture flow_picture(sim::Plans& plans, const sim::Scene& scene, const sim::State& state, const FlowRequest& request) {
+render::FlowPicture flow_picture(sim::Plans& plans, const sim::Scene& scene, const sim::State& state,
+                                 const FlowRequest& request) {
   sim::FlowFieldOptions accuracy;
   accuracy.near_order = {32, 40};  // errors below 1e-3 at the closest: a hundredth of a line's width
   const sim::FlowField field = sim::flow_field(plans, scene, state, accuracy);
@@ -196,7 +205,8 @@ render::FlowPicture flow_picture(sim::Plans& plans, const sim::Scene& scene, con
       Eigen::Index at = 0;
       curve.points.col(0).maxCoeff(&at);
       const Vec2 inward(-curve.tangents(at, 1), curve.tangents(at, 0));
-      for (const double side : {-0.6, 0.6}) seeds.push_back(curve.points.row(at).transpose() + side * request.spacing * inward);
+      for (const double side : {-0.6, 0.6})
+        seeds.push_back(curve.points.row(at).transpose() + side * request.spacing * inward);
     }
   render::StreamlineOptions options;
   options.spacing = request.spacing;
@@ -211,7 +221,8 @@ render::FlowPicture flow_picture(sim::Plans& plans, const sim::Scene& scene, con
   const sim::Vec3& o = request.plane.origin;
   const sim::Vec3& n = request.plane.normal;
   const sim::Vec3& u = request.frame_velocity;
-  picture.remarks = {fmt::format("plane through ({:.6g}, {:.6g}, {:.6g}) with normal ({:.6g}, {:.6g}, {:.6g})", o[0], o[1], o[2], n[0], n[1], n[2]),
+  picture.remarks = {fmt::format("plane through ({:.6g}, {:.6g}, {:.6g}) with normal ({:.6g}, {:.6g}, {:.6g})", o[0],
+                                 o[1], o[2], n[0], n[1], n[2]),
                      fmt::format("velocity of the frame: ({:.6g}, {:.6g}, {:.6g})", u[0], u[1], u[2])};
   return picture;
 }

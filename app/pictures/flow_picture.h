@@ -11,11 +11,11 @@ namespace app {
 
 struct FlowRequest {
   render::CutPlane plane;
-  render::Range x, y;        ///< window in the plane, lengths of the scene
+  render::Range x, y;                            ///< window in the plane, lengths of the scene
   sim::Vec3 frame_velocity = sim::Vec3::Zero();  ///< subtracted everywhere
-  double spacing = 0.2;      ///< of the lines, length
-  double length = 1;         ///< area radius: with the scene it determines which speeds are rounding errors
-  bool with_speed = true;    ///< also speeds on a net, for the background
+  double spacing = 0.2;                          ///< of the lines, length
+  double length = 1;       ///< area radius: with the scene it determines which speeds are rounding errors
+  bool with_speed = true;  ///< also speeds on a net, for the background
 };
 
 /// Throws Interrupted at the first signal: fine spacings take minutes.

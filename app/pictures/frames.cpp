@@ -1,11 +1,11 @@
 #include "app/pictures/frames.h"
 
 #include "app/base/interrupt.h"
-#include "app/pictures/movie.h"
-#include "app/scene/output.h"
 #include "app/base/printable.h"
 #include "app/base/progress.h"
 #include "app/base/version.h"
+#include "app/pictures/movie.h"
+#include "app/scene/output.h"
 
 #include "sim/core/digits.h"
 
@@ -52,7 +52,9 @@ render::PngText picture_text(const PictureSource& source, const Studio& studio, 
   return text;
 }
 
-std::string hash_of(const Production& production, double time) { return fmt::format("{}-{:.17g}", production.hash, time); }
+std::string hash_of(const Production& production, double time) {
+  return fmt::format("{}-{:.17g}", production.hash, time);
+}
 
 /// The numbers of the frames that this process draws, and what becomes of them.
 struct Task {
@@ -63,7 +65,8 @@ struct Task {
 std::vector<Task> tasks_of(const Production& production, const std::vector<double>& times, OwnedFiles& files,
                            const Options& options) {
   std::vector<Task> tasks;
-  for (auto f = static_cast<std::size_t>(options.shard); f < times.size(); f += static_cast<std::size_t>(options.shards)) {
+  for (auto f = static_cast<std::size_t>(options.shard); f < times.size();
+       f += static_cast<std::size_t>(options.shards)) {
     files.require(frame_name(f));
     const bool current =
         options.shader_dir.empty() && is_current(files.folder() / frame_name(f), hash_of(production, times[f]));
@@ -79,8 +82,8 @@ std::string movie_record(const Production& production, std::size_t frames, const
                      production.hash);
 }
 
-bool is_current_movie(const OwnedFiles& files, const std::string& movie, const Production& production, std::size_t frames,
-                      const render::MovieParameters& settings) {
+bool is_current_movie(const OwnedFiles& files, const std::string& movie, const Production& production,
+                      std::size_t frames, const render::MovieParameters& settings) {
   const fs::path path = files.folder() / movie, record = files.folder() / record_of_movie(movie);
   return fs::exists(path) && fs::exists(record) &&
          read_whole_file(record) == movie_record(production, frames, settings, path);
@@ -93,12 +96,15 @@ void remove_movie(OwnedFiles& files, const std::string& movie) {
 
 /// A copy of the frame nearest to `wanted`.
 fs::path write_poster(OwnedFiles& files, const std::vector<double>& times, double wanted) {
-  const auto nearest = std::min_element(times.begin(), times.end(),
-                                        [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
-  const std::string frame = read_whole_file(files.folder() / frame_name(static_cast<std::size_t>(nearest - times.begin())));
+  const auto nearest = std::min_element(
+      times.begin(), times.end(), [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
+  const std::string frame =
+      read_whole_file(files.folder() / frame_name(static_cast<std::size_t>(nearest - times.begin())));
   const fs::path poster = files.folder() / poster_name;
-  if (!fs::exists(poster) || read_whole_file(poster) != frame) files.write(poster_name, frame);
-  else if (!files.listed(poster_name)) files.adopt(poster_name);
+  if (!fs::exists(poster) || read_whole_file(poster) != frame)
+    files.write(poster_name, frame);
+  else if (!files.listed(poster_name))
+    files.adopt(poster_name);
   return poster;
 }
 
@@ -127,7 +133,7 @@ struct Job {
   const Options& options;
   const Settings& settings;  ///< of the first source
   const MovieFormat& format;
-  std::string movie;          ///< name of its file
+  std::string movie;  ///< name of its file
   Production production = {};
   std::vector<double> times = {};  ///< of the frames of all shards
   std::vector<Task> tasks = {};    ///< of this shard
@@ -140,16 +146,24 @@ struct Job {
 Job prepare(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
   const Settings& settings = sources.front().settings;
   const MovieFormat& format = find_movie_format(settings.movie.format);
-  Job job{.sources = sources, .files = files, .options = options, .settings = settings, .format = format, .movie = movie_name(format)};
+  Job job{.sources = sources,
+          .files = files,
+          .options = options,
+          .settings = settings,
+          .format = format,
+          .movie = movie_name(format)};
   if (job.whole()) check_movie(format, settings.view.size[0], settings.view.size[1]);
   job.production = prepare_pictures(sources);
   job.times = frame_times(longest(sources).trajectory, settings.movie);
   adopt_movie(files, job.movie);
-  if (job.whole()) require_pictures(files, settings);
-  else files.require_frames(true);
+  if (job.whole())
+    require_pictures(files, settings);
+  else
+    files.require_frames(true);
   std::error_code error;
   fs::create_directories(job.frames(), error);
-  if (error) throw std::runtime_error(fmt::format("cannot make folder '{}': {}", job.frames().string(), error.message()));
+  if (error)
+    throw std::runtime_error(fmt::format("cannot make folder '{}': {}", job.frames().string(), error.message()));
   files.clean();
   job.tasks = tasks_of(job.production, job.times, files, options);
   return job;
@@ -163,7 +177,8 @@ void finish_poster(const Job& job, FrameReport& report) {
   } else {  // the simulation ended before it
     job.files.remove(poster_name);
     const auto [time, last] = sim::told_apart(*wanted, end);
-    report.poster_remark = fmt::format("there is no poster: it is to show t = {}, and the trajectory ends at t = {}", time, last);
+    report.poster_remark =
+        fmt::format("there is no poster: it is to show t = {}, and the trajectory ends at t = {}", time, last);
   }
 }
 
@@ -173,7 +188,8 @@ void remove_other_frames(const Job& job) {
 
 void start(Film& film, const Job& job) {
   try {
-    film.encoder.emplace(job.format, job.files, job.production.width, job.production.height, job.settings.movie.frame_rate);
+    film.encoder.emplace(job.format, job.files, job.production.width, job.production.height,
+                         job.settings.movie.frame_rate);
     remove_movie(job.files, job.movie);
   } catch (const FfmpegMissing& missing) {
     film.report.remark = missing.what();
@@ -184,7 +200,8 @@ void finish(Film& film, const Job& job) {
   film.attempt([&] {
     const fs::path path = job.files.folder() / job.movie;
     film.encoder->finish();
-    job.files.write(record_of_movie(job.movie), movie_record(job.production, job.times.size(), job.settings.movie, path));
+    job.files.write(record_of_movie(job.movie),
+                    movie_record(job.production, job.times.size(), job.settings.movie, path));
     film.report.movie = path;
   });
 }

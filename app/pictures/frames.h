@@ -11,11 +11,11 @@ struct FrameReport {
   std::int64_t drawn = 0;  ///< now
   std::int64_t kept = 0;   ///< complete already, from an earlier run of the same scene, view and program
   bool interrupted = false;
-  std::filesystem::path movie;     ///< empty: none
-  std::filesystem::path poster;    ///< likewise
-  std::string poster_remark;       ///< why there is no poster although one was requested
-  std::string remark;              ///< why there is no movie
-  bool movie_failed = false;       ///< ... although ffmpeg is installed; the frames are complete anyway
+  std::filesystem::path movie;   ///< empty: none
+  std::filesystem::path poster;  ///< likewise
+  std::string poster_remark;     ///< why there is no poster although one was requested
+  std::string remark;            ///< why there is no movie
+  bool movie_failed = false;     ///< ... although ffmpeg is installed; the frames are complete anyway
 };
 
 /// Draws this shard's missing frames into folder/frames and, with one shard only, the movie beside it. Several
@@ -25,6 +25,7 @@ struct FrameReport {
 FrameReport render_frames(const std::vector<PictureSource>&, OwnedFiles& folder, const Options&);
 
 /// The picture of one instant. Throws std::invalid_argument when the trajectory does not reach it.
-void render_still(const std::vector<PictureSource>&, double time, const std::filesystem::path&, ResultFiles&, const Options&);
+void render_still(const std::vector<PictureSource>&, double time, const std::filesystem::path&, ResultFiles&,
+                  const Options&);
 
 }  // namespace app

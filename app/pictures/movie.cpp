@@ -21,13 +21,19 @@ namespace {
 /// One thread and no dates: the same frames give the same file.
 std::vector<std::string> arguments(const MovieFormat& format, const std::filesystem::path& draft, int width, int height,
                                    double frame_rate) {
-  std::vector<std::string> words{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-                                 "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", fmt::format("{}x{}", width, height),
-                                 "-framerate", fmt::format("{}", frame_rate), "-i", "pipe:0", "-an"};
+  std::vector<std::string> words{"ffmpeg",     "-hide_banner",
+                                 "-loglevel",  "error",
+                                 "-nostdin",   "-y",
+                                 "-f",         "rawvideo",
+                                 "-pix_fmt",   "rgb24",
+                                 "-s",         fmt::format("{}x{}", width, height),
+                                 "-framerate", fmt::format("{}", frame_rate),
+                                 "-i",         "pipe:0",
+                                 "-an"};
   words.insert(words.end(), format.encoder.begin(), format.encoder.end());
   if (frame_rate > format.fastest) words.insert(words.end(), {"-r", fmt::format("{}", format.fastest)});
-  words.insert(words.end(), {"-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1", "-f",
-                             std::string(format.muxer), draft.string()});
+  words.insert(words.end(), {"-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1",
+                             "-f", std::string(format.muxer), draft.string()});
   return words;
 }
 
@@ -44,16 +50,19 @@ sim::Draft draft_in(const std::filesystem::path& folder) {
 MovieEncoder::MovieEncoder(const MovieFormat& format, OwnedFiles& folder, int width, int height, double frame_rate)
     : folder_(folder), name_(movie_name(format)), draft_(draft_in(folder.folder())), width_(width), height_(height) {
   int frames[2];  // its input
-  if (pipe2(frames, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
+  if (pipe2(frames, O_CLOEXEC) != 0)
+    throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
   int reason = 0;
   try {
-    // An ffmpeg without its parent would go on with a movie that nobody waits for. Ctrl-C is for us: we end the movie in order.
-    child_ = start_child({.file = "ffmpeg",
-                          .words = arguments(format, std::filesystem::absolute(draft_.path()), width, height, frame_rate),
-                          .environment = {},
-                          .input = frames[0],
-                          .takes_ctrl_c = false,
-                          .last_signal = SIGKILL});
+    // An ffmpeg without its parent would go on with a movie that nobody waits for. Ctrl-C is for us: we end the movie
+    // in order.
+    child_ =
+        start_child({.file = "ffmpeg",
+                     .words = arguments(format, std::filesystem::absolute(draft_.path()), width, height, frame_rate),
+                     .environment = {},
+                     .input = frames[0],
+                     .takes_ctrl_c = false,
+                     .last_signal = SIGKILL});
   } catch (const std::system_error& error) {
     reason = error.code().value();
   }
@@ -75,8 +84,8 @@ MovieEncoder::~MovieEncoder() {
 
 void MovieEncoder::add(const render::Image& image) {
   if (image.width != width_ || image.height != height_ || image.channels != 3)
-    throw std::runtime_error(fmt::format("a frame of the movie is {} x {}, not {} x {}", image.width, image.height, width_,
-                                         height_));
+    throw std::runtime_error(
+        fmt::format("a frame of the movie is {} x {}, not {} x {}", image.width, image.height, width_, height_));
   const std::uint8_t* from = image.pixels.data();
   for (std::size_t left = image.pixels.size(); left > 0;) {
     const ssize_t done = ::write(pipe_, from, left);
@@ -94,10 +103,9 @@ void MovieEncoder::finish() {
   if (good && std::filesystem::file_size(draft_.path()) == 0)
     throw std::runtime_error(fmt::format("ffmpeg left no movie '{}'", (folder_.folder() / name_).string()));
   if (!good)
-    throw std::runtime_error(fmt::format("ffmpeg failed with {} {}; '{}' was not written",
-                                         WIFEXITED(status) ? "exit status" : "signal",
-                                         WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status),
-                                         (folder_.folder() / name_).string()));
+    throw std::runtime_error(
+        fmt::format("ffmpeg failed with {} {}; '{}' was not written", WIFEXITED(status) ? "exit status" : "signal",
+                    WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status), (folder_.folder() / name_).string()));
   folder_.list(name_, draft_);
   folder_.publish(draft_, name_);
 }

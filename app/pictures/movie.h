@@ -1,8 +1,8 @@
 // A movie: raw frames are piped into an ffmpeg child process, which writes the file.
 #pragma once
 
-#include "app/tables/movie_formats.h"
 #include "app/base/owned_files.h"
+#include "app/tables/movie_formats.h"
 
 #include "render/image/image.h"
 

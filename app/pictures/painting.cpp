@@ -21,12 +21,18 @@ namespace {
 double scale_of(const Painting& p, double bending_modulus) {
   const double length = p.length, modulus = bending_modulus > 0 ? bending_modulus : 1, rate = p.rate > 0 ? p.rate : 1;
   switch (p.field->scale) {
-    case sim::FieldScale::length: return 1 / length;
-    case sim::FieldScale::curvature: return length;
-    case sim::FieldScale::square_curvature: return length * length;
-    case sim::FieldScale::tension: return length * length / modulus;
-    case sim::FieldScale::force: return length * length * length / modulus;
-    case sim::FieldScale::velocity: return p.rate > 0 ? 1 / (length * rate) : 1;
+    case sim::FieldScale::length:
+      return 1 / length;
+    case sim::FieldScale::curvature:
+      return length;
+    case sim::FieldScale::square_curvature:
+      return length * length;
+    case sim::FieldScale::tension:
+      return length * length / modulus;
+    case sim::FieldScale::force:
+      return length * length * length / modulus;
+    case sim::FieldScale::velocity:
+      return p.rate > 0 ? 1 / (length * rate) : 1;
   }
   return 1;
 }
@@ -36,11 +42,16 @@ std::string label_of(const Painting& p, const sim::Scene& scene) {
                                  [](const sim::VesicleParameters& v) { return v.bending_modulus > 0; });
   const std::string_view per_modulus = bends ? "/κ_{b}" : "";
   switch (p.field->scale) {
-    case sim::FieldScale::length: return fmt::format("{} / R_{{0}}", p.field->symbol);
-    case sim::FieldScale::curvature: return fmt::format("{} R_{{0}}", p.field->symbol);
-    case sim::FieldScale::square_curvature: return fmt::format("{} R_{{0}}^{{2}}", p.field->symbol);
-    case sim::FieldScale::tension: return fmt::format("{} R_{{0}}^{{2}}{}", p.field->symbol, per_modulus);
-    case sim::FieldScale::force: return fmt::format("{} R_{{0}}^{{3}}{}", p.field->symbol, per_modulus);
+    case sim::FieldScale::length:
+      return fmt::format("{} / R_{{0}}", p.field->symbol);
+    case sim::FieldScale::curvature:
+      return fmt::format("{} R_{{0}}", p.field->symbol);
+    case sim::FieldScale::square_curvature:
+      return fmt::format("{} R_{{0}}^{{2}}", p.field->symbol);
+    case sim::FieldScale::tension:
+      return fmt::format("{} R_{{0}}^{{2}}{}", p.field->symbol, per_modulus);
+    case sim::FieldScale::force:
+      return fmt::format("{} R_{{0}}^{{3}}{}", p.field->symbol, per_modulus);
     case sim::FieldScale::velocity:
       return p.rate > 0 ? fmt::format("{} / {}R_{{0}}", p.field->symbol, scene.flows[0].kind == "shear" ? "γ̇" : "χ")
                         : std::string(p.field->symbol);
@@ -107,7 +118,8 @@ void give_range(render::Legend& legend, const render::ViewParameters& view, std:
     low = view.field_range[0];
     high = view.field_range[1];
   }
-  const bool both = has_sign && low < -size.rounding && high > size.rounding && std::min(-low, high) > 0.3 * std::max(-low, high);
+  const bool both =
+      has_sign && low < -size.rounding && high > size.rounding && std::min(-low, high) > 0.3 * std::max(-low, high);
   const render::ColourMapRow& map = map_for(view, both);
   if (view.field_range.empty()) {
     if (map.kind == render::MapKind::diverging) {
@@ -132,11 +144,14 @@ struct Quantity {
   double (*of)(const sim::VesicleParameters&, const sim::VesicleMeasures&);
 };
 constexpr Quantity quantities[] = {
-    {"viscosity_contrast", "λ", [](const sim::VesicleParameters& v, const sim::VesicleMeasures&) { return v.viscosity_contrast; }},
-    {"bending_modulus", "κ_{b}", [](const sim::VesicleParameters& v, const sim::VesicleMeasures&) { return v.bending_modulus; }},
+    {"viscosity_contrast", "λ",
+     [](const sim::VesicleParameters& v, const sim::VesicleMeasures&) { return v.viscosity_contrast; }},
+    {"bending_modulus", "κ_{b}",
+     [](const sim::VesicleParameters& v, const sim::VesicleMeasures&) { return v.bending_modulus; }},
     {"density_difference", "Δρ",
      [](const sim::VesicleParameters& v, const sim::VesicleMeasures&) { return v.density_difference; }},
-    {"reduced_volume", "ν", [](const sim::VesicleParameters&, const sim::VesicleMeasures& m) { return m.reduced_volume; }},
+    {"reduced_volume", "ν",
+     [](const sim::VesicleParameters&, const sim::VesicleMeasures& m) { return m.reduced_volume; }},
 };
 
 void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& settings, const sim::State& state) {
@@ -151,7 +166,8 @@ void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& s
   std::vector<double> all = values;
   give_range(legend, view, all, values, false, {});
   legend.mirrored = false;  // whole bodies have one value each: no dots
-  for (const double value : values) p.bodies.push_back(render::mapped(legend.colours, (value - legend.low) / (legend.high - legend.low)));
+  for (const double value : values)
+    p.bodies.push_back(render::mapped(legend.colours, (value - legend.low) / (legend.high - legend.low)));
   p.legend = legend;
 }
 
@@ -189,7 +205,8 @@ Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vecto
   p.legend.emplace();
   p.legend->label = label_of(p, settings.scene);
   give_range(*p.legend, view, values, std::vector(still ? of_still : values), p.field->has_sign,
-             {unit * scales.size_of(p.field->scale), unit * scales.rounding_of(p.field->scale)}, p.field->automatic_end);
+             {unit * scales.size_of(p.field->scale), unit * scales.rounding_of(p.field->scale)},
+             p.field->automatic_end);
   return p;
 }
 
@@ -204,7 +221,8 @@ sim::Coefficients painted_field(sim::Plans& plans, const Painting& p, const Sett
 void share_legend(const std::vector<Painting*>& paintings, bool given) {
   for (const Painting* p : paintings)
     if (!p->legend || !p->field || p->field != paintings.front()->field) return;
-  const auto mirrored = std::find_if(paintings.begin(), paintings.end(), [](const Painting* p) { return p->legend->mirrored; });
+  const auto mirrored =
+      std::find_if(paintings.begin(), paintings.end(), [](const Painting* p) { return p->legend->mirrored; });
   render::Legend all = *(mirrored != paintings.end() ? *mirrored : paintings.front())->legend;
   for (const Painting* p : paintings) {
     all.low = std::min(all.low, p->legend->low);

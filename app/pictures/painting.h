@@ -32,6 +32,6 @@ void share_legend(const std::vector<Painting*>&, bool given);
 
 /// The field of one vesicle in the units of the legend, for make_mesh(); the surroundings are those of the state.
 sim::Coefficients painted_field(sim::Plans&, const Painting&, const Settings&, const sim::State&, std::size_t vesicle,
-                               sim::Surroundings&);
+                                sim::Surroundings&);
 
 }  // namespace app

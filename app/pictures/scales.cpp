@@ -11,27 +11,36 @@ namespace app {
 
 double NaturalScales::size_of(sim::FieldScale scale) const {
   switch (scale) {
-    case sim::FieldScale::length: return length;
-    case sim::FieldScale::curvature: return 1 / length;
-    case sim::FieldScale::square_curvature: return 1 / length / length;
-    case sim::FieldScale::tension: return velocity;  // viscosity x velocity
-    case sim::FieldScale::force: return velocity / length;
-    case sim::FieldScale::velocity: return velocity;
+    case sim::FieldScale::length:
+      return length;
+    case sim::FieldScale::curvature:
+      return 1 / length;
+    case sim::FieldScale::square_curvature:
+      return 1 / length / length;
+    case sim::FieldScale::tension:
+      return velocity;  // viscosity x velocity
+    case sim::FieldScale::force:
+      return velocity / length;
+    case sim::FieldScale::velocity:
+      return velocity;
   }
   return 1;
 }
 
-// Each derivative of a surface multiplies the rounding of its positions by up to its order: two in curvatures, four in forces,
-// from which tensions and velocities come.
+// Each derivative of a surface multiplies the rounding of its positions by up to its order: two in curvatures, four in
+// forces, from which tensions and velocities come.
 double NaturalScales::rounding_of(sim::FieldScale scale) const {
   const double base = 10 * digits, two = static_cast<double>(order) * order;
   switch (scale) {
-    case sim::FieldScale::length: return base * size_of(scale);
+    case sim::FieldScale::length:
+      return base * size_of(scale);
     case sim::FieldScale::curvature:
-    case sim::FieldScale::square_curvature: return base * two * size_of(scale);
+    case sim::FieldScale::square_curvature:
+      return base * two * size_of(scale);
     case sim::FieldScale::tension:
     case sim::FieldScale::force:
-    case sim::FieldScale::velocity: return std::max(base * two * two, solve) * size_of(scale);
+    case sim::FieldScale::velocity:
+      return std::max(base * two * two, solve) * size_of(scale);
   }
   return 0;
 }
@@ -57,7 +66,8 @@ NaturalScales natural_scales(const sim::Scene& scene, const sim::State& state, d
     s.velocity = std::max(s.velocity, sim::background_velocity(flows, 0, points).rowwise().norm().maxCoeff());
     const sim::VesicleParameters& p = scene.vesicles[v];
     s.velocity = std::max(s.velocity, p.bending_modulus / area_radius / area_radius);
-    s.velocity = std::max(s.velocity, std::abs(p.density_difference) * scene.buoyancy.gravity.norm() * area_radius * area_radius);
+    s.velocity = std::max(s.velocity,
+                          std::abs(p.density_difference) * scene.buoyancy.gravity.norm() * area_radius * area_radius);
   }
   if (!(s.velocity > 0)) s.velocity = 1;
   s.digits = std::numeric_limits<double>::epsilon() * (1 + farthest / area_radius);

@@ -1,8 +1,8 @@
 // Natural scales of the quantities of a scene. Values far below them are rounding errors, in any unit.
 #pragma once
 
-#include "sim/measures/fields.h"
 #include "sim/core/parameters.h"
+#include "sim/measures/fields.h"
 
 namespace app {
 

@@ -25,8 +25,8 @@ namespace {
 
 std::vector<std::string> words_of(const Options& options, const std::filesystem::path& folder, int shard) {
   std::vector<std::string> words{"tanktread", "render"};
-  words.insert(words.end(), {"-q", "-o", folder.string(), "--shard", fmt::format("{}/{}", shard, options.jobs), "--gl",
-                             options.gl});
+  words.insert(words.end(),
+               {"-q", "-o", folder.string(), "--shard", fmt::format("{}/{}", shard, options.jobs), "--gl", options.gl});
   for (const std::string& change : options.set) words.insert(words.end(), {"--set", change});
   if (!options.shader_dir.empty()) words.insert(words.end(), {"--shader-dir", options.shader_dir.string()});
   words.emplace_back("--");  // a name may begin with a dash
@@ -107,12 +107,14 @@ std::optional<std::int64_t> draw_in_processes(const Options& options, const std:
   while (children.running() > 0) {
     if (interrupted()) children.stop();
     failed = !children.collect() || failed;
-    progress.show(1 - static_cast<double>(children.running()) / options.jobs, fmt::format("{} processes", options.jobs));
+    progress.show(1 - static_cast<double>(children.running()) / options.jobs,
+                  fmt::format("{} processes", options.jobs));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   if (interrupted()) return {};
-  if (failed) throw std::runtime_error(fmt::format("not all frames could be drawn; those that are complete are kept in '{}'",
-                                                   (folder / "frames").string()));
+  if (failed)
+    throw std::runtime_error(fmt::format("not all frames could be drawn; those that are complete are kept in '{}'",
+                                         (folder / "frames").string()));
   std::int64_t drawn = 0;
   for (const FrameFile& file : frame_files(folder / "frames")) drawn += !before.contains(file);
   return drawn;

@@ -2,8 +2,8 @@
 #include "app/reproduce/reproduce_items.h"
 
 #include "render/figures/plot_marks.h"
-#include "sim/surface/shapes.h"
 #include "sim/stepping/stepper.h"
+#include "sim/surface/shapes.h"
 
 #include <fmt/format.h>
 
@@ -70,7 +70,9 @@ void measure(Errors& errors, sim::Plans& plans, int p, double gap, std::size_t c
   const sim::State now = sim::evaluate(model, d).value();
   for (std::size_t k = 0; k < 2; ++k) d.vesicles[k].motion = {now.vesicles[k].velocity, now.vesicles[k].tension};
   const auto advance = [&](const char* scheme) {
-    return sim::find_row(sim::scheme_catalogue(), scheme)->function.advance({model, d, paper_step, scene.flows}).value();
+    return sim::find_row(sim::scheme_catalogue(), scheme)
+        ->function.advance({model, d, paper_step, scene.flows})
+        .value();
   };
   const sim::Advance exact = advance("globally-implicit");
   errors.lagged = std::max(errors.lagged, difference(advance("block-implicit"), exact));
@@ -96,7 +98,8 @@ Errors measured_errors(int p, const Effort& effort) {
 }
 
 TextTable table_of(const Errors& errors) {
-  TextTable table{.caption = "Relative error ‖y⁺ − y*‖/‖y*‖ of the coefficients.", .columns = {"gap / R_0"}, .rows = {}};
+  TextTable table{
+      .caption = "Relative error ‖y⁺ − y*‖/‖y*‖ of the coefficients.", .columns = {"gap / R_0"}, .rows = {}};
   for (const double contrast : errors.contrasts) table.columns.push_back(fmt::format("λ = {}", contrast));
   for (std::size_t k = 0; k < errors.gaps.size(); ++k) {
     std::vector<std::string>& cells = table.rows.emplace_back();
@@ -108,7 +111,8 @@ TextTable table_of(const Errors& errors) {
 
 void draw(const render::Pen& pen, const Errors& errors) {
   std::vector<double> all;
-  for (const std::vector<double>& of_contrast : errors.values) all.insert(all.end(), of_contrast.begin(), of_contrast.end());
+  for (const std::vector<double>& of_contrast : errors.values)
+    all.insert(all.end(), of_contrast.begin(), of_contrast.end());
   const render::Panel panel{
       .x = render::decades(errors.gaps), .y = render::decades(all), .left = 66, .top = 16, .width = 276, .height = 232};
   std::vector<render::LegendEntry> legend;
@@ -133,13 +137,17 @@ Report reproduce_block_error(const Effort& effort) {
   const TextTable table = table_of(errors);
   Report report;
   report.title = "Figure 5: one block iteration against distance";
-  report.setting = {"Two prolates, ν = 0.85, area 4π, long axes along x, one above the other along z (the paper's configuration is "
-                    "only pictured), in the shear flow u = z e_x, κ_b = 0.01, γ̇Δt = 0.21.",
-                    fmt::format("p = {}. y = (x, σ): y* solves the coupled system (40) to 1e-11, y⁺ is one block Jacobi iteration "
-                                "from the present x_n, at rest, and the tension that solves (3) there.", p)};
+  report.setting = {
+      "Two prolates, ν = 0.85, area 4π, long axes along x, one above the other along z (the paper's configuration is "
+      "only pictured), in the shear flow u = z e_x, κ_b = 0.01, γ̇Δt = 0.21.",
+      fmt::format("p = {}. y = (x, σ): y* solves the coupled system (40) to 1e-11, y⁺ is one block Jacobi iteration "
+                  "from the present x_n, at rest, and the tension that solves (3) there.",
+                  p)};
   report.tables = {table};
-  report.findings = {fmt::format("With the double layer of the velocities that solve (3) there, as our block-implicit scheme "
-                                 "takes it from the step before, no error above is larger than {}.", scientific(errors.lagged))};
+  report.findings = {
+      fmt::format("With the double layer of the velocities that solve (3) there, as our block-implicit scheme "
+                  "takes it from the step before, no error above is larger than {}.",
+                  scientific(errors.lagged))};
   render::Figure& figure = report.figure.emplace();
   figure.csv = csv_text(table);
   figure.drawing = {.width = 360, .height = 300, .paint = [errors](cairo_t* cairo, const render::Font& font) {

@@ -3,11 +3,11 @@
 
 #include "render/figures/plot_marks.h"
 #include "render/scene/section.h"
-#include "sim/surface/dealias.h"
 #include "sim/sphere/legendre.h"
 #include "sim/sphere/norms.h"
 #include "sim/stepping/simulate.h"
 #include "sim/stepping/stepper.h"
+#include "sim/surface/dealias.h"
 
 #include <fmt/format.h>
 
@@ -68,39 +68,42 @@ Report reproduce_aliasing(const Effort&) {
   report.setting = {"P_n^m(z) normalised to unit square integral over [−1, 1]; 7-point Gauss-Legendre grid.",
                     "Each high function is multiplied by the factor that fits P_4^1 best at the nodes."};
   TextTable table{"Values at the nodes; in the last row the root mean square deviation from P_4^1, relative.",
-                  {"z", "P_4^1", "P_19^2, scaled", "P_64^1, scaled"}, {}};
+                  {"z", "P_4^1", "P_19^2, scaled", "P_64^1, scaled"},
+                  {}};
   const auto tidy = [](double v) { return fmt::format("{:.6f}", std::abs(v) < 5e-7 ? 0 : v); };
   for (std::size_t k = 0; k < at.size(); ++k)
     table.rows.push_back({tidy(at[k]), tidy(low_at[k]), tidy(aliases[0].at_nodes[k]), tidy(aliases[1].at_nodes[k])});
   table.rows.push_back({"deviation", "0", scientific(aliases[0].deviation, 3), scientific(aliases[1].deviation, 3)});
   report.tables.push_back(table);
-  report.findings = {fmt::format("On these seven nodes the two functions are indistinguishable from P_4^1 by eye, as in the "
-                                 "paper's plot, but not the same: they deviate by {:.1f} % and {:.1f} % (factors {:.4f} and {:.4f}).",
-                                 100 * aliases[0].deviation, 100 * aliases[1].deviation, aliases[0].scale, aliases[1].scale)};
+  report.findings = {
+      fmt::format("On these seven nodes the two functions are indistinguishable from P_4^1 by eye, as in the "
+                  "paper's plot, but not the same: they deviate by {:.1f} % and {:.1f} % (factors {:.4f} and {:.4f}).",
+                  100 * aliases[0].deviation, 100 * aliases[1].deviation, aliases[0].scale, aliases[1].scale)};
   render::Figure figure;
   figure.csv = "z,P_4_1,P_19_2_scaled,P_64_1_scaled\n";
   for (std::size_t k = 0; k < fine.size(); ++k)
-    figure.csv += fmt::format("{:.10g},{:.10g},{:.10g},{:.10g}\n", fine[k], low[k], aliases[0].values[k], aliases[1].values[k]);
-  figure.drawing = {510, 236, [=](cairo_t* cairo, const render::Font& font) {
-                      const render::Theme theme = render::find_theme("paper");
-                      const render::Pen pen{cairo, font, theme};
-                      for (std::size_t k = 0; k < aliases.size(); ++k) {
-                        const render::Panel panel{{-1, 1}, {-2.6, 2.6}, 50 + 240 * static_cast<double>(k), 30, 204, 160};
-                        constexpr render::Colour grey{0.62, 0.66, 0.72};
-                        render::draw_polyline(pen, panel, fine, aliases[k].values, {grey, 0.6});
-                        render::draw_polyline(pen, panel, fine, low, {render::curve_colour(0), 1.15});
-                        render::draw_markers(pen, panel, at, low_at, render::Marker::dot, render::curve_colour(1), 2);
-                        render::Axes axes;
-                        axes.x.label = "z";
-                        axes.y.numbers = k == 0;
-                        render::draw_axes(pen, panel, axes);
-                        render::draw_title(pen, panel, k == 0 ? "(a)" : "(b)");
-                        render::draw_legend_line(
-                            pen, panel.left + panel.width, 23,
-                            {{"P_{4}^{1}", render::curve_colour(0), {}, false},
-                             {fmt::format("P_{{{}}}^{{{}}}", aliases[k].n, aliases[k].m), grey, {}, false}});
-                      }
-                    }};
+    figure.csv +=
+        fmt::format("{:.10g},{:.10g},{:.10g},{:.10g}\n", fine[k], low[k], aliases[0].values[k], aliases[1].values[k]);
+  figure.drawing = {
+      510, 236, [=](cairo_t* cairo, const render::Font& font) {
+        const render::Theme theme = render::find_theme("paper");
+        const render::Pen pen{cairo, font, theme};
+        for (std::size_t k = 0; k < aliases.size(); ++k) {
+          const render::Panel panel{{-1, 1}, {-2.6, 2.6}, 50 + 240 * static_cast<double>(k), 30, 204, 160};
+          constexpr render::Colour grey{0.62, 0.66, 0.72};
+          render::draw_polyline(pen, panel, fine, aliases[k].values, {grey, 0.6});
+          render::draw_polyline(pen, panel, fine, low, {render::curve_colour(0), 1.15});
+          render::draw_markers(pen, panel, at, low_at, render::Marker::dot, render::curve_colour(1), 2);
+          render::Axes axes;
+          axes.x.label = "z";
+          axes.y.numbers = k == 0;
+          render::draw_axes(pen, panel, axes);
+          render::draw_title(pen, panel, k == 0 ? "(a)" : "(b)");
+          render::draw_legend_line(pen, panel.left + panel.width, 23,
+                                   {{"P_{4}^{1}", render::curve_colour(0), {}, false},
+                                    {fmt::format("P_{{{}}}^{{{}}}", aliases[k].n, aliases[k].m), grey, {}, false}});
+        }
+      }};
   report.figure = std::move(figure);
   report.picture_text = "P_4^1 (blue) and a high function (grey) that takes its values at the seven nodes (dots).";
   return report;
@@ -112,11 +115,11 @@ constexpr double least_shown = 1e-12;  // degrees that a symmetry empties are sm
 
 /// A shape and the norms of its coefficients by degree n; NaN beyond its order.
 struct Spectra {
-  int order = 0, fine = 0;              ///< highest degrees of the position, and of the grid for its mean curvature
+  int order = 0, fine = 0;  ///< highest degrees of the position, and of the grid for its mean curvature
   sim::Coefficients shape;
   std::vector<double> of_x, of_h;
-  std::vector<double> of_folded;        ///< of the mean curvature from the grid of the position's own order
-  double in_band = 0;                   ///< relative error of that mean curvature in the degrees of the position
+  std::vector<double> of_folded;  ///< of the mean curvature from the grid of the position's own order
+  double in_band = 0;             ///< relative error of that mean curvature in the degrees of the position
 };
 
 /// A shape that fills its band: a biconcave disc after some time in Poiseuille flow.
@@ -162,7 +165,8 @@ Spectra spectra_of(sim::Plans& plans, const sim::Coefficients& x, int fine) {
 TextTable table_of(const Spectra& s) {
   TextTable table{.caption = "", .columns = {"n", "E_n(x)", "E_n(H)", "E_n(H) from the p-grid"}, .rows = {}};
   for (std::size_t n = 0; n < s.of_h.size(); ++n)
-    table.rows.push_back({std::to_string(n), scientific(s.of_x[n], 6), scientific(s.of_h[n], 6), scientific(s.of_folded[n], 6)});
+    table.rows.push_back(
+        {std::to_string(n), scientific(s.of_x[n], 6), scientific(s.of_h[n], 6), scientific(s.of_folded[n], 6)});
   return table;
 }
 
@@ -172,7 +176,8 @@ TextTable every_eighth(const TextTable& table) {
   return excerpt;
 }
 
-void draw_spectrum(const render::Pen& pen, const render::Panel& panel, const std::vector<double>& norms, std::size_t colour) {
+void draw_spectrum(const render::Pen& pen, const render::Panel& panel, const std::vector<double>& norms,
+                   std::size_t colour) {
   std::vector<double> n, y;
   for (std::size_t k = 0; k < norms.size(); ++k)
     if (norms[k] > least_shown) {
@@ -188,11 +193,16 @@ void draw_spectra(const render::Pen& pen, const Spectra& s, const std::vector<re
   for (const double v : s.of_x)
     if (v > least_shown) all.push_back(v);
   for (double& v : all) v = std::max(v, least_shown);
-  const render::Panel panel{
-      .x = {0, static_cast<double>(s.fine)}, .y = render::decades(all), .left = 66, .top = 16, .width = 318, .height = 232};
+  const render::Panel panel{.x = {0, static_cast<double>(s.fine)},
+                            .y = render::decades(all),
+                            .left = 66,
+                            .top = 16,
+                            .width = 318,
+                            .height = 232};
   draw_spectrum(pen, panel, s.of_h, 1);
   draw_spectrum(pen, panel, s.of_x, 0);
-  render::draw_axes(pen, panel, {.x = {.label = "degree n"}, .y = {.label = "E_{n}", .scale = render::Scale::logarithmic}});
+  render::draw_axes(pen, panel,
+                    {.x = {.label = "degree n"}, .y = {.label = "E_{n}", .scale = render::Scale::logarithmic}});
   // The section of the shape, in the upper right.
   const render::Panel inset{.x = {-1.7, 1.7},
                             .y = {-1.7, 1.7},
@@ -201,7 +211,8 @@ void draw_spectra(const render::Pen& pen, const Spectra& s, const std::vector<re
                             .width = 84,
                             .height = 84};
   for (const render::ClosedCurve& curve : section) {
-    const Eigen::Vector2d middle = 0.5 * (curve.points.colwise().maxCoeff() + curve.points.colwise().minCoeff()).transpose();
+    const Eigen::Vector2d middle =
+        0.5 * (curve.points.colwise().maxCoeff() + curve.points.colwise().minCoeff()).transpose();
     render::draw_closed_curve(pen, inset, curve, -middle, {{0.25, 0.28, 0.33}, 0.75}, 0.12);
   }
   render::draw_legend(
@@ -220,13 +231,17 @@ Report reproduce_spectra(const Effort& effort) {
   const TextTable table = table_of(spectra);
   Report report;
   report.title = "Figure 3: spectra of position and mean curvature";
-  report.setting = {fmt::format("The paper's shape is only pictured; ours is a biconcave disc, ν = 0.65, p = {}, κ_b = 0.01, λ = 1, after "
-                                "t = {} in the Poiseuille flow u_x = −0.1 (y² + z²) (bdf2, Δt = 0.05).", p, end),
-                    fmt::format("E_n of Eq. (18): norm of the coefficients of degree n; H computed on the {}-grid.", q)};
+  report.setting = {
+      fmt::format(
+          "The paper's shape is only pictured; ours is a biconcave disc, ν = 0.65, p = {}, κ_b = 0.01, λ = 1, after "
+          "t = {} in the Poiseuille flow u_x = −0.1 (y² + z²) (bdf2, Δt = 0.05).",
+          p, end),
+      fmt::format("E_n of Eq. (18): norm of the coefficients of degree n; H computed on the {}-grid.", q)};
   const std::vector<double>& of_h = spectra.of_h;
-  report.findings = {fmt::format("x ends at n = {}; at n = {} H has still {} of its largest E_n. Taken from the {}-grid alone, H "
-                                 "is wrong by {} in its coefficients n ≤ {}.", p, q, scientific(of_h.back() / *std::max_element(of_h.begin(), of_h.end())),
-                                 p, scientific(spectra.in_band), p)};
+  report.findings = {fmt::format(
+      "x ends at n = {}; at n = {} H has still {} of its largest E_n. Taken from the {}-grid alone, H "
+      "is wrong by {} in its coefficients n ≤ {}.",
+      p, q, scientific(of_h.back() / *std::max_element(of_h.begin(), of_h.end())), p, scientific(spectra.in_band), p)};
   report.tables.push_back(every_eighth(table));
   const std::vector<render::ClosedCurve> section = render::cut(spectra.shape, {});
   render::Figure& figure = report.figure.emplace();

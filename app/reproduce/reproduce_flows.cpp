@@ -1,9 +1,9 @@
 // Figures 4 and 6: whole simulations, whose scenes and trajectories are left beside the figures.
+#include "app/export/simulation.h"
 #include "app/figures/figures.h"
 #include "app/reproduce/reproduce_items.h"
 #include "app/scene/scene_file.h"
 #include "app/scene/scene_text.h"
-#include "app/export/simulation.h"
 
 #include "sim/measures/diagnostics.h"
 #include "sim/trajectory/trajectory.h"
@@ -28,8 +28,9 @@ SimulationReport simulate_scene(const Settings& settings, const std::string& nam
   const fs::path scene = folder / (name + ".toml"), trajectory = folder / (name + ".h5");
   // A trajectory is an earlier one of ours where our scene stands beside it.
   if (fs::exists(trajectory) && !effort.options.force && !OwnedFiles(folder).listed(scene.filename().string()))
-    throw std::runtime_error(fmt::format("'{}' exists and was not made by this command; give another -o, or --force to replace it",
-                                         trajectory.string()));
+    throw std::runtime_error(
+        fmt::format("'{}' exists and was not made by this command; give another -o, or --force to replace it",
+                    trajectory.string()));
   effort.files.write(scene, write_scene(settings));
   Options options = effort.options;
   options.steps.reset();
@@ -85,16 +86,20 @@ Report reproduce_poiseuille(const Effort& effort) {
   const double unit = effort.quick ? 0.001 : 0.05;  // of time, for one of the paper's steps
   Report report;
   report.title = "Figure 4: a biconcave vesicle in Poiseuille flow";
-  report.setting = {"Biconcave disc, ν = 0.65, area 4π, axis along the flow u_x = −0.1 (y² + z²), on the axis of the tube; κ_b = 0.01, "
-                    "λ = 1, p = 8, Δt = 0.05, 800 steps. The paper does not state its flow rate.",
-                    "Drawn: bdf2 with area and volume correction. Below also the paper's own scheme, backward Euler, without."};
-  TextTable table{"Errors of area and volume at the end.", {"scheme", "correction", "run", "e_A", "e_V", "upsampling"}, {}};
+  report.setting = {
+      "Biconcave disc, ν = 0.65, area 4π, axis along the flow u_x = −0.1 (y² + z²), on the axis of the tube; κ_b = "
+      "0.01, "
+      "λ = 1, p = 8, Δt = 0.05, 800 steps. The paper does not state its flow rate.",
+      "Drawn: bdf2 with area and volume correction. Below also the paper's own scheme, backward Euler, without."};
+  TextTable table{
+      "Errors of area and volume at the end.", {"scheme", "correction", "run", "e_A", "e_V", "upsampling"}, {}};
   struct Row {
     const char *name, *scheme;
     bool correction;
   };
   for (const Row& row : {Row{"fig4", "bdf2", true}, Row{"fig4-paper", "globally-implicit", false}}) {
-    const Settings changed = read({fmt::format("time.scheme={}", row.scheme), fmt::format("numerics.correction={}", row.correction)});
+    const Settings changed =
+        read({fmt::format("time.scheme={}", row.scheme), fmt::format("numerics.correction={}", row.correction)});
     const SimulationReport run = simulate_scene(changed, row.name, effort);
     const sim::TrajectoryReader trajectory = open_trajectory(row.name, effort);
     const RunRecord record = record_of(trajectory);
@@ -116,28 +121,34 @@ Report reproduce_poiseuille(const Effort& effort) {
   wanted.columns = effort.quick ? 0 : 7;
   for (const int step : {0, 100, 200, 300, 400, 600, 800}) wanted.times.push_back(step * unit);
   report.figure = make_figure({{trajectory, settings, {}}}, wanted, effort.options);
-  report.picture_text = "Sections with the plane y = 0, at steps 0, 100, 200, 300, 400, 600 and 800, as in the paper, each in a window round "
-                        "its centroid; the flow goes to the right.";
+  report.picture_text =
+      "Sections with the plane y = 0, at steps 0, 100, 200, 300, 400, 600 and 800, as in the paper, each in a window "
+      "round "
+      "its centroid; the flow goes to the right.";
   return report;
 }
 
 Report reproduce_two_vesicles(const Effort& effort) {
   const std::vector<std::string> shorter =
-      effort.quick ? std::vector<std::string>{"time.end=0.63", "numerics.near_latitudes=12", "numerics.near_longitudes=12"}
-                   : std::vector<std::string>{};
+      effort.quick
+          ? std::vector<std::string>{"time.end=0.63", "numerics.near_latitudes=12", "numerics.near_longitudes=12"}
+          : std::vector<std::string>{};
   const Settings settings = parse_scene(two_vesicles_scene, "fig6", ".", shorter);
   const SimulationReport run = simulate_scene(settings, "fig6", effort);
   const sim::TrajectoryReader trajectory = open_trajectory("fig6", effort);
   const RunRecord record = record_of(trajectory);
   Report report;
   report.title = "Figure 6: two vesicles in shear flow";
-  report.setting = {"Two prolates, ν = 0.85, area 4π, long axes along x, centres ∓(1.2, 0, −0.5) (the paper's are only pictured), in the "
-                    "shear flow u = γ̇ z e_x; λ = 10, κ_b = 0.01, p = 8, bdf2, γ̇Δt = 0.21, 330 steps, area and volume correction on.",
-                    "The membranes start 0.005 R_0 apart; the near-singular rule serves all close pairs."};
+  report.setting = {
+      "Two prolates, ν = 0.85, area 4π, long axes along x, centres ∓(1.2, 0, −0.5) (the paper's are only pictured), in "
+      "the "
+      "shear flow u = γ̇ z e_x; λ = 10, κ_b = 0.01, p = 8, bdf2, γ̇Δt = 0.21, 330 steps, area and volume correction on.",
+      "The membranes start 0.005 R_0 apart; the near-singular rule serves all close pairs."};
 
   sim::Plans plans;
   const std::int64_t last = trajectory.count() - 1;
-  const std::vector<int> steps = effort.quick ? std::vector<int>{0, 1, 2, 3} : std::vector<int>{0, 30, 60, 90, 120, 150, 180, 330};
+  const std::vector<int> steps =
+      effort.quick ? std::vector<int>{0, 1, 2, 3} : std::vector<int>{0, 30, 60, 90, 120, 150, 180, 330};
   std::string csv = "step,time,vesicle,center_x,center_y,center_z,inclination_deg\n";
   for (std::int64_t k = 0; k <= last; ++k) {
     stop_if_interrupted();
@@ -147,8 +158,10 @@ Report reproduce_two_vesicles(const Effort& effort) {
       csv += fmt::format("{},{:.10g},{},{:.10g},{:.10g},{:.10g},{:.6g}\n", state.step, state.time, v, all[v].center[0],
                          all[v].center[1], all[v].center[2], all[v].inclination_deg);
   }
-  TextTable table{"The instants shown; x, z: centre of the first vesicle, the second is its mirror image to rounding errors.",
-                  {"", "step", "γ̇t", "x / R_0", "z / R_0", "inclination (°)"}, {}};
+  TextTable table{
+      "The instants shown; x, z: centre of the first vesicle, the second is its mirror image to rounding errors.",
+      {"", "step", "γ̇t", "x / R_0", "z / R_0", "inclination (°)"},
+      {}};
   render::FigureParameters wanted;
   wanted.kind = "snapshots";
   wanted.dots_per_inch = 300;
@@ -156,20 +169,25 @@ Report reproduce_two_vesicles(const Effort& effort) {
     const sim::State state = trajectory.state(steps[k]);
     const std::vector<sim::VesicleMeasures> all = measures_of(plans, state);
     const std::string letter = fmt::format("({})", static_cast<char>('a' + k));
-    table.rows.push_back({letter, std::to_string(steps[k]), fmt::format("{:.2f}", state.time), fmt::format("{:.4f}", all[0].center[0]),
-                          fmt::format("{:.4f}", all[0].center[2]), fmt::format("{:.1f}", all[0].inclination_deg)});
+    table.rows.push_back({letter, std::to_string(steps[k]), fmt::format("{:.2f}", state.time),
+                          fmt::format("{:.4f}", all[0].center[0]), fmt::format("{:.4f}", all[0].center[2]),
+                          fmt::format("{:.1f}", all[0].inclination_deg)});
     wanted.times.push_back(state.time);
   }
   report.tables.push_back(table);
   report.findings = {
-      fmt::format("The run {} {} of 330 steps, {} repeated shorter; smallest gap {:.4f} R_0; errors at the end: area {}, "
-                  "volume {} (required: below 1e-6).",
-                  end_of(run), last, record.retries, record.gap, scientific(record.area_error), scientific(record.volume_error)),
+      fmt::format(
+          "The run {} {} of 330 steps, {} repeated shorter; smallest gap {:.4f} R_0; errors at the end: area {}, "
+          "volume {} (required: below 1e-6).",
+          end_of(run), last, record.retries, record.gap, scientific(record.area_error),
+          scientific(record.volume_error)),
       "The paper shows no numbers for this figure: compare the sequence, kiss, roll over, part, tumble."};
 
   report.figure = make_figure({{trajectory, settings, {}}}, wanted, effort.options);
   report.figure->csv = csv;  // every state, not those shown alone
-  report.picture_text = "Seen along the vorticity axis, x to the right, z up; all panels at one scale. Dots and lines move with the membrane.";
+  report.picture_text =
+      "Seen along the vorticity axis, x to the right, z up; all panels at one scale. Dots and lines move with the "
+      "membrane.";
   return report;
 }
 

@@ -20,16 +20,16 @@ struct Effort {
   Progress& progress;
 };
 
-Report reproduce_upsampling(const Effort&);           // Table 2
-Report reproduce_double_layer(const Effort&);         // Table 3
-Report reproduce_stable_steps(const Effort&);         // Table 4
-Report reproduce_cost(const Effort&);                 // Table 5
-Report reproduce_aliasing(const Effort&);             // Figure 2
-Report reproduce_spectra(const Effort&);              // Figure 3
-Report reproduce_poiseuille(const Effort&);           // Figure 4
-Report reproduce_block_error(const Effort&);          // Figure 5
-Report reproduce_two_vesicles(const Effort&);         // Figure 6
-Report reproduce_tank_treading(const Effort&);        // other authors' angles and frequencies
+Report reproduce_upsampling(const Effort&);     // Table 2
+Report reproduce_double_layer(const Effort&);   // Table 3
+Report reproduce_stable_steps(const Effort&);   // Table 4
+Report reproduce_cost(const Effort&);           // Table 5
+Report reproduce_aliasing(const Effort&);       // Figure 2
+Report reproduce_spectra(const Effort&);        // Figure 3
+Report reproduce_poiseuille(const Effort&);     // Figure 4
+Report reproduce_block_error(const Effort&);    // Figure 5
+Report reproduce_two_vesicles(const Effort&);   // Figure 6
+Report reproduce_tank_treading(const Effort&);  // other authors' angles and frequencies
 
 /// Orders p of tables 4 and 5.
 std::vector<int> table_orders(const Effort&);

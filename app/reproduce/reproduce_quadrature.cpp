@@ -1,8 +1,8 @@
 // Tables 2 and 3: what a shape asks of the grids.
 #include "app/reproduce/reproduce_items.h"
 
-#include "sim/surface/dealias.h"
 #include "sim/sphere/norms.h"
+#include "sim/surface/dealias.h"
 #include "sim/surface/shapes.h"
 
 #include <fmt/format.h>
@@ -25,15 +25,16 @@ std::string names_of_shapes() {
 
 constexpr const char* own_shapes = "The paper's shapes are only pictured; ours are other ones: ";
 
-/// What the errors must not exceed; from an independent implementation, twice its errors, and from the shapes' analyticity.
+/// What the errors must not exceed; from an independent implementation, twice its errors, and from the shapes'
+/// analyticity.
 struct Bound {
   int shape, order;
   double error;
 };
-constexpr Bound bounds[] = {{0, 8, 1e-3},       {0, 16, 1e-6},      {0, 32, 1e-12},     {1, 8, 2 * 8.1e-6},
-                            {1, 12, 2 * 3.7e-8}, {1, 16, 2 * 1.6e-10}, {1, 24, 4e-13},     {1, 32, 4e-13},
-                            {2, 8, 2e-2},       {2, 12, 4e-3},      {2, 16, 1.1e-3},    {2, 24, 1.46e-4},
-                            {2, 32, 2.6e-5},    {3, 8, 4e-3},       {3, 16, 2e-4},      {3, 32, 4e-7}};
+constexpr Bound bounds[] = {{0, 8, 1e-3},        {0, 16, 1e-6},        {0, 32, 1e-12},  {1, 8, 2 * 8.1e-6},
+                            {1, 12, 2 * 3.7e-8}, {1, 16, 2 * 1.6e-10}, {1, 24, 4e-13},  {1, 32, 4e-13},
+                            {2, 8, 2e-2},        {2, 12, 4e-3},        {2, 16, 1.1e-3}, {2, 24, 1.46e-4},
+                            {2, 32, 2.6e-5},     {3, 8, 4e-3},         {3, 16, 2e-4},   {3, 32, 4e-7}};
 
 struct PaperErrors {
   int order;
@@ -51,8 +52,10 @@ Report reproduce_upsampling(const Effort& effort) {
   constexpr int order = 8, most = 10;
   Report report;
   report.title = "Table 2: upsampling that the mean curvature needs";
-  report.setting = {fmt::format("{}{}.", own_shapes, names_of_shapes()),
-                    fmt::format("p = {}: least υ with ‖H_υp − H_80‖ ≤ ε ‖H_80‖, norms over the coefficients n ≤ p (Eq. (28)).", order)};
+  report.setting = {
+      fmt::format("{}{}.", own_shapes, names_of_shapes()),
+      fmt::format("p = {}: least υ with ‖H_υp − H_80‖ ≤ ε ‖H_80‖, norms over the coefficients n ≤ p (Eq. (28)).",
+                  order)};
   TextTable table{"Upsampling rate υ; the paper's are those of its five surfaces.", {"ε"}, {}};
   for (const NamedShape& shape : reference_shapes()) table.columns.push_back(shape.name);
   table.columns.push_back("paper");
@@ -88,7 +91,8 @@ Report reproduce_upsampling(const Effort& effort) {
   for (const NamedShape& shape : reference_shapes()) detail.columns.push_back(shape.name);
   for (int rate = 1; rate < most; ++rate) {
     std::vector<std::string> cells{std::to_string(rate)};
-    for (const std::vector<double>& of_shape : errors) cells.push_back(scientific(of_shape[static_cast<std::size_t>(rate - 1)]));
+    for (const std::vector<double>& of_shape : errors)
+      cells.push_back(scientific(of_shape[static_cast<std::size_t>(rate - 1)]));
     detail.rows.push_back(cells);
   }
   report.tables.push_back(detail);
@@ -99,11 +103,13 @@ Report reproduce_double_layer(const Effort& effort) {
   const int reference_order = effort.quick ? 16 : 40, reference_source = effort.quick ? 40 : 80;
   Report report;
   report.title = "Table 3: convergence of the double layer";
-  report.setting = {fmt::format("{}{}.", own_shapes, names_of_shapes()),
-                    "Density f = x. Error ‖D_p x − D x‖/‖D x‖ over the coefficients n ≤ p; targets and rotated sources of D_p "
-                    "on grids of order p + 1.",
-                    fmt::format("Reference D x: degree {}, rotated source grids of order {}.", reference_order, reference_source)};
-  TextTable table{"Relative error; in brackets what is required. The paper's columns are its own four shapes.", {"p"}, {}};
+  report.setting = {
+      fmt::format("{}{}.", own_shapes, names_of_shapes()),
+      "Density f = x. Error ‖D_p x − D x‖/‖D x‖ over the coefficients n ≤ p; targets and rotated sources of D_p "
+      "on grids of order p + 1.",
+      fmt::format("Reference D x: degree {}, rotated source grids of order {}.", reference_order, reference_source)};
+  TextTable table{
+      "Relative error; in brackets what is required. The paper's columns are its own four shapes.", {"p"}, {}};
   for (const NamedShape& shape : reference_shapes()) table.columns.push_back(shape.name);
   for (int k = 1; k <= 4; ++k) table.columns.push_back(fmt::format("paper {}", k));
   std::vector<sim::Coefficients> exact;
@@ -116,7 +122,8 @@ Report reproduce_double_layer(const Effort& effort) {
       const sim::Coefficients x = position_of(shape, reference_order);
       exact.push_back(layers.assemble(x, true).dual.apply(x));
       const int last = std::min(32, reference_order);
-      norms += fmt::format("{}{}: {:.12f}", norms.empty() ? "" : "; ", shape.name, sim::band_norm(exact.back(), 0, last));
+      norms +=
+          fmt::format("{}{}: {:.12f}", norms.empty() ? "" : "; ", shape.name, sim::band_norm(exact.back(), 0, last));
     }
   }
   bool met = true;
@@ -143,9 +150,11 @@ Report reproduce_double_layer(const Effort& effort) {
     table.rows.push_back(cells);
   }
   report.tables.push_back(table);
-  report.findings = {fmt::format("Every required bound is {}.", met ? "met" : "NOT met"),
-                     "Norms ‖D x‖ over n ≤ 32 of the reference, to compare with the exact 1.335754224622 of the ellipsoid and "
-                     "1.236249878 of the biconcave disc: " + norms};
+  report.findings = {
+      fmt::format("Every required bound is {}.", met ? "met" : "NOT met"),
+      "Norms ‖D x‖ over n ≤ 32 of the reference, to compare with the exact 1.335754224622 of the ellipsoid and "
+      "1.236249878 of the biconcave disc: " +
+          norms};
   if (effort.quick) report.findings.pop_back();
   return report;
 }

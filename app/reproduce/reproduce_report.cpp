@@ -32,7 +32,8 @@ std::string without_trailing_spaces(std::string line) {
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
   return text;
 }
 
@@ -125,8 +126,9 @@ std::vector<fs::path> write_report(const Report& report, const fs::path& folder,
   if (report.figure) {
     std::string tables;  // a page that shows the picture beside other numbers is found out
     for (const TextTable& table : report.tables) tables += markdown_text(table);
-    files = render::write_figure(*report.figure, folder / item,
-                                 {{"Title", report.title}, {"Software", "tanktread " + version()}, {"tanktread:tables", tables}}, write);
+    files = render::write_figure(
+        *report.figure, folder / item,
+        {{"Title", report.title}, {"Software", "tanktread " + version()}, {"tanktread:tables", tables}}, write);
   }
   for (std::size_t k = 0; k < report.tables.size(); ++k) {
     const bool first = k == 0 && !report.figure;

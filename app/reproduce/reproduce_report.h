@@ -23,20 +23,22 @@ std::string csv_text(const TextTable&);
 
 struct Report {
   std::string title;
-  std::vector<std::string> setting;   ///< shapes and parameters needed to repeat it
+  std::vector<std::string> setting;  ///< shapes and parameters needed to repeat it
   std::vector<TextTable> tables;
   std::vector<std::string> findings;
   std::optional<render::Figure> figure;
-  std::string picture_text;           ///< caption of the figure
+  std::string picture_text;  ///< caption of the figure
 };
 
 /// For the terminal: setting, tables, findings.
 std::string plain_text(const Report&);
 /// ITEM.md; `command` reproduces it.
 std::string markdown_text(const Report&, const std::string& item, const std::string& command);
-/// Writes ITEM.md, the figure's files, and ITEM.csv, ITEM-2.csv... of the tables that the figure's CSV does not replace.
-std::vector<std::filesystem::path> write_report(const Report&, const std::filesystem::path& folder, const std::string& item,
-                                                const std::string& command, const sim::FileWriter& write);
+/// Writes ITEM.md, the figure's files, and ITEM.csv, ITEM-2.csv... of the tables that the figure's CSV does not
+/// replace.
+std::vector<std::filesystem::path> write_report(const Report&, const std::filesystem::path& folder,
+                                                const std::string& item, const std::string& command,
+                                                const sim::FileWriter& write);
 
 /// "8.1e-6": two significant digits, as in the paper; "0" for zero, "-" for not a number.
 std::string scientific(double value, int digits = 2);

@@ -10,8 +10,9 @@
 
 namespace app {
 
-const char* const prolate_setting = "One vesicle: prolate, ν = 0.85, area 4π, long axis along x, in the shear flow u = γ̇ z "
-                                    "e_x, κ_b = 0.01, γ̇ = 1 (lengths in R_0: the paper does not state its own).";
+const char* const prolate_setting =
+    "One vesicle: prolate, ν = 0.85, area 4π, long axis along x, in the shear flow u = γ̇ z "
+    "e_x, κ_b = 0.01, γ̇ = 1 (lengths in R_0: the paper does not state its own).";
 
 std::vector<int> table_orders(const Effort& effort) {
   if (effort.quick) return {6};
@@ -30,7 +31,7 @@ struct FixedRun {
   bool stable = false;
   std::string reason;
   double time = 0;
-  double area_error = 0;  ///< largest of the vesicles at the end
+  double area_error = 0;                                 ///< largest of the vesicles at the end
   double gap = std::numeric_limits<double>::infinity();  ///< smallest on the way
 };
 
@@ -70,8 +71,8 @@ struct StableStep {
 };
 
 /// From the coarsest rung down: a run that will not live ends early, so this is cheaper than bisection from below.
-StableStep stable_step(const sim::Scene& scene, sim::Plans& plans, const Ladder& ladder, double end, const Effort& effort,
-                       const std::string& what) {
+StableStep stable_step(const sim::Scene& scene, sim::Plans& plans, const Ladder& ladder, double end,
+                       const Effort& effort, const std::string& what) {
   StableStep result;
   for (int rung = ladder.first; rung <= ladder.last; ++rung) {
     result.tried = rung_step(rung);
@@ -117,15 +118,16 @@ struct SchemeRow {
   const char* scheme;
   double contrast;
   Ladder ladder;
-  bool correction;     ///< of area and volume
-  const char* paper;   ///< its steps
+  bool correction;    ///< of area and volume
+  const char* paper;  ///< its steps
   double modulus = 0.01;
 
   bool slow() const { return std::string_view(scheme) == "explicit" || std::string_view(scheme) == "block-jacobi"; }
 };
 
 std::vector<SchemeRow> scheme_rows(const Effort& effort) {
-  if (effort.quick) return {{"explicit", 1, {0, 2}, false, "2.7e-2 at p = 8"}, {"globally-implicit", 10, {0, 0}, true, "2.1e-1"}};
+  if (effort.quick)
+    return {{"explicit", 1, {0, 2}, false, "2.7e-2 at p = 8"}, {"globally-implicit", 10, {0, 0}, true, "2.1e-1"}};
   return {{"explicit", 1, {-4, 20}, false, "2.7e-2, 6.7e-3, 1.7e-3, 8.4e-4, 2.1e-4"},
           {"explicit", 1, {-4, 20}, false, "", 0.1},
           {"block-jacobi", 1, {-4, 10}, true, "5.4e-2"},
@@ -145,10 +147,12 @@ struct Fit {
 };
 
 std::string fit_text(const Fit& fit, double modulus) {
-  const Fit last{.log_p = {fit.log_p.end() - 2, fit.log_p.end()}, .log_step = {fit.log_step.end() - 2, fit.log_step.end()}};
-  return fmt::format("Explicit, κ_b = {}: a fit of Δt ~ p^-a gives a = {:.2f}, between the two highest orders "
-                     "{:.2f}; the paper's five values give 3.5.",
-                     modulus, -fitted_slope(fit.log_p, fit.log_step), -fitted_slope(last.log_p, last.log_step));
+  const Fit last{.log_p = {fit.log_p.end() - 2, fit.log_p.end()},
+                 .log_step = {fit.log_step.end() - 2, fit.log_step.end()}};
+  return fmt::format(
+      "Explicit, κ_b = {}: a fit of Δt ~ p^-a gives a = {:.2f}, between the two highest orders "
+      "{:.2f}; the paper's five values give 3.5.",
+      modulus, -fitted_slope(fit.log_p, fit.log_step), -fitted_slope(last.log_p, last.log_step));
 }
 
 /// The tables of one vesicle.
@@ -158,14 +162,17 @@ struct StepTables {
 
 StepTables empty_tables(const std::vector<int>& orders) {
   StepTables tables;
-  tables.stable = {.caption = "Largest stable γ̇Δt on the ladder; ≥: larger steps were not tried, <: none so large is stable.",
-                   .columns = order_columns(orders, {"scheme", "λ", "κ_b"}),
-                   .rows = {}};
+  tables.stable = {
+      .caption = "Largest stable γ̇Δt on the ladder; ≥: larger steps were not tried, <: none so large is stable.",
+      .columns = order_columns(orders, {"scheme", "λ", "κ_b"}),
+      .rows = {}};
   tables.stable.columns.emplace_back("paper (p = 8, 12, 16, 24, 32)");
-  tables.errors = {.caption = "Relative error of the area at T with that step and no correction; 'stops' where the run then stops.",
-                   .columns = order_columns(orders, {"scheme", "λ", "κ_b"}),
-                   .rows = {}};
-  tables.stops = {.caption = "Why the next larger step stops.", .columns = {"scheme", "λ", "κ_b", "p", "at"}, .rows = {}};
+  tables.errors = {
+      .caption = "Relative error of the area at T with that step and no correction; 'stops' where the run then stops.",
+      .columns = order_columns(orders, {"scheme", "λ", "κ_b"}),
+      .rows = {}};
+  tables.stops = {
+      .caption = "Why the next larger step stops.", .columns = {"scheme", "λ", "κ_b", "p", "at"}, .rows = {}};
   return tables;
 }
 
@@ -181,7 +188,8 @@ sim::Scene scene_of(const SchemeRow& row, int p, double end) {
 
 /// Adds a row to each table. Runs without correction go into the fit.
 Fit add_row(StepTables& tables, const SchemeRow& row, sim::Plans& plans, double end, const Effort& effort) {
-  std::vector<std::string> cells{row.scheme, fmt::format("{}", row.contrast), fmt::format("{}", row.modulus)}, error_cells = cells;
+  std::vector<std::string> cells{row.scheme, fmt::format("{}", row.contrast), fmt::format("{}", row.modulus)},
+      error_cells = cells;
   Ladder ladder = row.ladder;
   Fit fit;
   for (const int p : table_orders(effort)) {
@@ -194,7 +202,8 @@ Fit add_row(StepTables& tables, const SchemeRow& row, sim::Plans& plans, double 
     const std::string what = fmt::format("{}, λ = {}, p = {}", row.scheme, row.contrast, p);
     const StableStep found = stable_step(scene, plans, ladder, end, effort, what);
     cells.push_back(cell_of(found));
-    if (!found.reason.empty()) tables.stops.rows.push_back({cells[0], cells[1], cells[2], std::to_string(p), found.reason});
+    if (!found.reason.empty())
+      tables.stops.rows.push_back({cells[0], cells[1], cells[2], std::to_string(p), found.reason});
     if (!std::isfinite(found.step)) {
       error_cells.push_back("-");
       continue;
@@ -206,7 +215,8 @@ Fit add_row(StepTables& tables, const SchemeRow& row, sim::Plans& plans, double 
     } else {
       fit.log_p.push_back(std::log(p));
       fit.log_step.push_back(std::log(found.step));
-      ladder.first = std::max(row.ladder.first, static_cast<int>(std::lround(2 * std::log2(paper_step / found.step))) - 1);
+      ladder.first =
+          std::max(row.ladder.first, static_cast<int>(std::lround(2 * std::log2(paper_step / found.step))) - 1);
     }
     error_cells.push_back(bare.stable ? scientific(bare.area_error) : fmt::format("stops at t = {:.2g}", bare.time));
   }
@@ -220,8 +230,11 @@ TextTable pair_table(sim::Plans& plans, double end, const Effort& effort) {
   struct PairRow {
     const char *scheme, *paper;
   };
-  constexpr PairRow rows[] = {{"block-jacobi", "none"}, {"block-implicit", "none"}, {"globally-implicit", "2.1e-1"}, {"bdf2", ""}};
-  const std::vector<int> orders = effort.quick ? std::vector<int>{6} : effort.full ? std::vector<int>{8, 16} : std::vector<int>{8};
+  constexpr PairRow rows[] = {
+      {"block-jacobi", "none"}, {"block-implicit", "none"}, {"globally-implicit", "2.1e-1"}, {"bdf2", ""}};
+  const std::vector<int> orders = effort.quick  ? std::vector<int>{6}
+                                  : effort.full ? std::vector<int>{8, 16}
+                                                : std::vector<int>{8};
   const Ladder ladder = effort.quick ? Ladder{0, 0} : Ladder{-2, 4};
   TextTable table{.caption = "Two vesicles, λ = 10.",
                   .columns = {"scheme", "p", "stable γ̇Δt", "smallest gap", "the next larger step stops", "paper"},
@@ -232,7 +245,8 @@ TextTable pair_table(sim::Plans& plans, double end, const Effort& effort) {
       sim::Scene scene = sheared_pair(p, 10);
       scene.time.scheme = row.scheme;
       scene.numerics.gmres_tolerance = 1e-8;
-      const StableStep found = stable_step(scene, plans, ladder, end, effort, fmt::format("two vesicles, {}, p = {}", row.scheme, p));
+      const StableStep found =
+          stable_step(scene, plans, ladder, end, effort, fmt::format("two vesicles, {}, p = {}", row.scheme, p));
       table.rows.push_back({row.scheme, std::to_string(p), cell_of(found),
                             found.run.stable ? fmt::format("{:.3f}", found.run.gap) : "-",
                             found.reason.empty() ? "-" : found.reason, row.paper});
@@ -247,18 +261,21 @@ Report reproduce_stable_steps(const Effort& effort) {
   sim::Plans plans;
   Report report;
   report.title = "Table 4: stable time steps";
-  report.setting = {prolate_setting, pair_text,
-                    fmt::format("Stable: steps of one length to T = {}/γ̇ without a stop (GMRES, |ΔA| ≤ 2 % and |ΔE| ≤ 50 % a "
-                                "step, gap, area correction). Steps are 0.21 times powers of √2, from the largest downward.", end),
-                    "Linear solves to 1e-8, aliasing tolerance 1e-4, reparametrization when due. Area and volume correction off "
-                    "for the explicit scheme, as in the paper, on for the others; its effect is the second table."};
+  report.setting = {
+      prolate_setting, pair_text,
+      fmt::format("Stable: steps of one length to T = {}/γ̇ without a stop (GMRES, |ΔA| ≤ 2 % and |ΔE| ≤ 50 % a "
+                  "step, gap, area correction). Steps are 0.21 times powers of √2, from the largest downward.",
+                  end),
+      "Linear solves to 1e-8, aliasing tolerance 1e-4, reparametrization when due. Area and volume correction off "
+      "for the explicit scheme, as in the paper, on for the others; its effect is the second table."};
   StepTables tables = empty_tables(table_orders(effort));
   for (const SchemeRow& row : scheme_rows(effort)) {
     const Fit fit = add_row(tables, row, plans, end, effort);
     if (fit.log_p.size() > 1) report.findings.push_back(fit_text(fit, row.modulus));
   }
-  report.findings.emplace_back("For λ ≠ 1 the explicit scheme as printed has no double layer at all (in (43) and the update D x cancels "
-                            "against r). Ours keeps that of the step before; it is shown for λ = 1 only, as in the paper.");
+  report.findings.emplace_back(
+      "For λ ≠ 1 the explicit scheme as printed has no double layer at all (in (43) and the update D x cancels "
+      "against r). Ours keeps that of the step before; it is shown for λ = 1 only, as in the paper.");
   report.tables = {tables.stable, tables.errors, tables.stops, pair_table(plans, end, effort)};
   return report;
 }

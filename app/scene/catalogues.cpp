@@ -3,16 +3,16 @@
 #include "app/tables/movie_formats.h"
 #include "app/tables/quantities.h"
 
-#include "render/scene/view.h"
 #include "render/core/colormap.h"
-#include "render/figures/figure.h"
 #include "render/core/style.h"
+#include "render/figures/figure.h"
 #include "render/figures/theme.h"
+#include "render/scene/view.h"
 #include "sim/measures/fields.h"
 #include "sim/membrane/flows.h"
-#include "sim/suspension/placements.h"
-#include "sim/surface/shapes.h"
 #include "sim/stepping/stepper.h"
+#include "sim/surface/shapes.h"
+#include "sim/suspension/placements.h"
 
 namespace app {
 

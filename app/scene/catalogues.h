@@ -6,8 +6,8 @@
 namespace app {
 
 struct Catalogue {
-  std::string_view name;     ///< as in `tanktread list NAME` and Parameter::catalogue
-  std::string_view meaning;  ///< one line, no full stop
+  std::string_view name;                     ///< as in `tanktread list NAME` and Parameter::catalogue
+  std::string_view meaning;                  ///< one line, no full stop
   std::vector<sim::CatalogueRow<int>> rows;  ///< name, meaning and keys of each kind, without its function
 };
 

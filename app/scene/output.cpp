@@ -1,8 +1,8 @@
 #include "app/scene/output.h"
 
-#include "app/tables/movie_formats.h"
 #include "app/scene/scene_file.h"
 #include "app/scene/scene_text.h"
+#include "app/tables/movie_formats.h"
 
 #include "render/figures/figure.h"
 #include "sim/core/input_file.h"
@@ -59,10 +59,11 @@ namespace {
 
 constexpr const char scene_name[] = "scene.toml", trajectory_name[] = "trajectory.h5";
 
-/// A folder of an earlier version, which kept no list: a resolved scene beside its trajectory is ours, and so are the figures
-/// that the scene asks for.
+/// A folder of an earlier version, which kept no list: a resolved scene beside its trajectory is ours, and so are the
+/// figures that the scene asks for.
 void adopt_earlier(OwnedFiles& files, const Settings& there, const std::string& text) {
-  if (!files.unlisted() || text != write_scene(there) || !sim::holds_trajectory(files.folder() / trajectory_name)) return;
+  if (!files.unlisted() || text != write_scene(there) || !sim::holds_trajectory(files.folder() / trajectory_name))
+    return;
   try {
     const sim::TrajectoryReader trajectory(files.folder() / trajectory_name);
     const Settings simulated = parse_scene(trajectory.header().scene, "its scene", files.folder(), {}, SceneUse::draw);
@@ -116,8 +117,10 @@ FolderState inspect_folder(OwnedFiles& files, const Settings& settings, bool for
   FolderState state = FolderState::fresh;
   if (!fs::exists(fs::symlink_status(scene))) {
     if (fs::exists(folder / trajectory_name) && !force)
-      throw std::runtime_error(fmt::format("folder '{}' holds a trajectory without its scene.toml; give another -o, or "
-                                           "--force to replace it", folder.string()));
+      throw std::runtime_error(
+          fmt::format("folder '{}' holds a trajectory without its scene.toml; give another -o, or "
+                      "--force to replace it",
+                      folder.string()));
   } else {
     const std::string text = fs::is_regular_file(fs::symlink_status(scene)) ? read_whole_file(scene) : std::string();
     std::optional<Settings> there;
@@ -136,11 +139,14 @@ FolderState inspect_folder(OwnedFiles& files, const Settings& settings, bool for
     // A scene that says what the resolved one would say stays, whoever wrote it.
     if (state != FolderState::same && text != write_scene(settings)) files.require(scene_name);
     if (!there && !force)
-      throw std::runtime_error(fmt::format("folder '{}' holds a scene that cannot be read ({}); give another -o, or --force "
-                                           "to replace it", folder.string(), complaint));
+      throw std::runtime_error(
+          fmt::format("folder '{}' holds a scene that cannot be read ({}); give another -o, or --force "
+                      "to replace it",
+                      folder.string(), complaint));
     if (!same_simulation && !force)
-      throw std::runtime_error(fmt::format("folder '{}' belongs to another scene: {}; give another -o, or --force to replace it",
-                                           folder.string(), text_of(differences)));
+      throw std::runtime_error(
+          fmt::format("folder '{}' belongs to another scene: {}; give another -o, or --force to replace it",
+                      folder.string(), text_of(differences)));
   }
   adopt_movie(files, movie_name(find_movie_format(settings.movie.format)));
   require_pictures(files, settings);

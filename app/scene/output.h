@@ -24,8 +24,8 @@ std::vector<std::string> figure_names(const render::FigureParameters&);
 
 /// What an output folder of `run` already contains.
 enum class FolderState {
-  fresh,      ///< new, or discarded by --force
-  same,       ///< exactly this scene, pictures included
+  fresh,        ///< new, or discarded by --force
+  same,         ///< exactly this scene, pictures included
   same_physics  ///< this simulation with other pictures or another end time
 };
 

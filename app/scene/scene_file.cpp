@@ -1,16 +1,16 @@
 #include "app/scene/scene_file.h"
 
 #include "app/base/interrupt.h"
-#include "app/scene/catalogues.h"
 #include "app/base/printable.h"
+#include "app/scene/catalogues.h"
 #include "app/scene/scene_overrides.h"
 #include "app/scene/scene_values.h"
 
 #include "render/core/palette.h"
 #include "sim/core/digits.h"
 #include "sim/core/input_file.h"
-#include "sim/suspension/placements.h"
 #include "sim/surface/shapes.h"
+#include "sim/suspension/placements.h"
 
 #include <fmt/format.h>
 
@@ -36,8 +36,8 @@ bool contains(const std::vector<std::string_view>& words, std::string_view word)
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// For a key that stands where it does not belong, or is misspelt: " (did you mean 'vesicle.viscosity_contrast'?)", all tables
-/// that have it; empty when no table has a key like it.
+/// For a key that stands where it does not belong, or is misspelt: " (did you mean 'vesicle.viscosity_contrast'?)", all
+/// tables that have it; empty when no table has a key like it.
 std::string key_elsewhere(std::string_view word, bool misspelt) {
   std::vector<std::pair<std::string_view, std::string_view>> keys;  // table, key
   const Settings defaults;
@@ -45,8 +45,10 @@ std::string key_elsewhere(std::string_view word, bool misspelt) {
     const auto add = [&](const auto& one) {
       visit(one, [&](const sim::Parameter& p, const auto&) { keys.emplace_back(section.name, p.name); });
     };
-    if constexpr (requires { parameters.begin(); }) add(typename std::decay_t<decltype(parameters)>::value_type{});
-    else add(parameters);
+    if constexpr (requires { parameters.begin(); })
+      add(typename std::decay_t<decltype(parameters)>::value_type{});
+    else
+      add(parameters);
   });
   std::vector<std::string_view> names;
   for (const auto& [table, key] : keys) names.push_back(key);
@@ -83,9 +85,10 @@ void refuse_other_files(std::string_view text, const std::filesystem::path& path
   struct Kind {
     std::string_view start, what;
   };
-  constexpr Kind kinds[] = {{"\211HDF\r\n\032\n", "a trajectory or another HDF5 file, not a scene; 'tanktread info' tells what is in it"},
-                            {"\211PNG\r\n\032\n", "a picture, not a scene"},
-                            {"\377\330\377", "a picture, not a scene"}};
+  constexpr Kind kinds[] = {
+      {"\211HDF\r\n\032\n", "a trajectory or another HDF5 file, not a scene; 'tanktread info' tells what is in it"},
+      {"\211PNG\r\n\032\n", "a picture, not a scene"},
+      {"\377\330\377", "a picture, not a scene"}};
   if (text.empty()) throw std::runtime_error(fmt::format("{}: is empty", path.string()));
   for (const Kind& kind : kinds)
     if (text.starts_with(kind.start)) throw std::runtime_error(fmt::format("{}: is {}", path.string(), kind.what));
@@ -94,12 +97,24 @@ void refuse_other_files(std::string_view text, const std::filesystem::path& path
 }
 
 /// Is an optional, text or list member of a kind that needs it not given?
-template <class T> bool missing(const T&) { return false; }
-template <class T> bool missing(const std::optional<T>& value) { return !value; }
-template <class T> bool missing(const std::vector<T>& value) { return value.empty(); }
+template <class T>
+bool missing(const T&) {
+  return false;
+}
+template <class T>
+bool missing(const std::optional<T>& value) {
+  return !value;
+}
+template <class T>
+bool missing(const std::vector<T>& value) {
+  return value.empty();
+}
 bool missing(const std::string& value) { return value.empty(); }
 
-template <class P> std::string_view selected(const P&) { return {}; }
+template <class P>
+std::string_view selected(const P&) {
+  return {};
+}
 std::string_view selected(const sim::FlowParameters& p) { return p.kind; }
 std::string_view selected(const sim::VesicleParameters& p) { return p.shape; }
 std::string_view selected(const sim::PlacementParameters& p) { return p.kind; }
@@ -111,13 +126,14 @@ struct Reader {
   SceneUse use;
 
   // What no single range can say.
-  template <class P> void check(const toml::table&, P&) const {}
+  template <class P>
+  void check(const toml::table&, P&) const {}
   void check(const toml::table& table, sim::FlowParameters& p) const {
     if (p.until <= p.from) fail_at(source_of(table, "until"), fmt::format("'until' must be after 'from', {}", p.from));
     for (const TimeFactorKey& k : time_factor_keys)
       if (table.contains(k.key) && p.time_factor != k.factor)
-        fail_at(source_of(table, k.key), fmt::format("'{}' is a key of time_factor '{}', not of '{}'", k.key, k.factor,
-                                                     p.time_factor));
+        fail_at(source_of(table, k.key),
+                fmt::format("'{}' is a key of time_factor '{}', not of '{}'", k.key, k.factor, p.time_factor));
   }
   void check(const toml::table& table, render::ViewParameters& p) const {
     if (p.size.size() != 2) fail_at(source_of(table, "size"), "'size' must be two whole numbers, [width, height]");
@@ -133,13 +149,17 @@ struct Reader {
   }
   void check(const toml::table& table, render::FigureParameters& p) const {
     if (p.out.find('/') != std::string::npos || p.out == "." || p.out == "..")
-      fail_at(source_of(table, "out"), fmt::format("'out' must be a file name without folders, not '{}'; results stay in the "
-                                                   "output folder ('tanktread figure -o' writes anywhere)", p.out));
+      fail_at(source_of(table, "out"),
+              fmt::format("'out' must be a file name without folders, not '{}'; results stay in the "
+                          "output folder ('tanktread figure -o' writes anywhere)",
+                          p.out));
     if (printable(p.out) != p.out)
-      fail_at(source_of(table, "out"), fmt::format("'out' must be a file name without control characters, not '{}'", p.out));
+      fail_at(source_of(table, "out"),
+              fmt::format("'out' must be a file name without control characters, not '{}'", p.out));
   }
   void check(const toml::table& table, sim::TimeParameters& p) const {
-    for (const auto& [key, length] : {std::pair{"step", p.step}, std::pair{"save_every", p.save_every.value_or(p.step)}})
+    for (const auto& [key, length] :
+         {std::pair{"step", p.step}, std::pair{"save_every", p.save_every.value_or(p.step)}})
       if (const double steps = p.end / length; steps > most_steps)
         fail_at(source_of(table, key), fmt::format("{:.3g} steps are too many; '{}' must be longer", steps, key));
   }
@@ -154,7 +174,8 @@ struct Reader {
     if (p.area && p.radius) fail_at(source_of(table, "radius"), "give 'area' or 'radius', not both");
     if (p.axis && p.axis->norm() == 0) fail_at(source_of(table, "axis"), "'axis' must not be the zero vector");
     for (const auto& term : p.coefficients)
-      if (term[0] < 0 || term[0] != std::floor(term[0]) || term[1] != std::floor(term[1]) || std::abs(term[1]) > term[0])
+      if (term[0] < 0 || term[0] != std::floor(term[0]) || term[1] != std::floor(term[1]) ||
+          std::abs(term[1]) > term[0])
         fail_at(source_of(table, "coefficients"),
                 fmt::format("[{}, {}, {}] is no term [n, m, value] with whole n >= 0 and |m| <= n", term[0], term[1],
                             term[2]));
@@ -166,7 +187,8 @@ struct Reader {
       p.file = path.string();
       const std::string own = checksum(text_of(path));
       if (p.checksum && *p.checksum != own)
-        fail_at(source_of(table, "checksum"), fmt::format("the file '{}' has changed: its checksum is {}", p.file, own));
+        fail_at(source_of(table, "checksum"),
+                fmt::format("the file '{}' has changed: its checksum is {}", p.file, own));
       p.checksum = own;
     } else if (p.checksum) {
       fail_at(source_of(table, "checksum"), fmt::format("'checksum' is a key of shape 'file', not of '{}'", p.shape));
@@ -185,8 +207,8 @@ struct Reader {
     if (!table) return;
     for (const sim::VesicleParameters& v : scene.vesicles)
       if (n.source_order > 0 && n.source_order < v.order)
-        fail_at(source_of(*table, "source_order"), fmt::format("'source_order' must be at least the vesicles' order {}, not {}",
-                                                               v.order, n.source_order));
+        fail_at(source_of(*table, "source_order"),
+                fmt::format("'source_order' must be at least the vesicles' order {}, not {}", v.order, n.source_order));
     if (n.repulsion_strength > 0 && !n.near_rule)
       fail_at(source_of(*table, "near_rule"), "the repulsion acts where the near rule does: it needs near_rule = true");
   }
@@ -204,7 +226,8 @@ struct Reader {
         fail_at(source_of(*table, figure.out.empty() ? "kind" : "out"),
                 fmt::format("two figures would be called '{}'; give one of them another 'out'", stem));
       if (settings.movie.poster && stem == "poster")
-        fail_at(source_of(*table, "out"), "the poster of the movie is called 'poster' already; give the figure another 'out'");
+        fail_at(source_of(*table, "out"),
+                "the poster of the movie is called 'poster' already; give the figure another 'out'");
       taken.push_back(stem);
     }
   }
@@ -220,8 +243,10 @@ struct Reader {
                                           elsewhere.empty() ? sim::suggestion(key.str(), known) : elsewhere));
       }
     visit(parameters, [&](const sim::Parameter& p, auto& value) {
-      if (const toml::node* node = table.get(p.name)) read_value(p, *node, value);
-      else if (p.required) fail_at(table.source(), fmt::format("[{}] needs '{}': {}", section.name, p.name, p.meaning));
+      if (const toml::node* node = table.get(p.name))
+        read_value(p, *node, value);
+      else if (p.required)
+        fail_at(table.source(), fmt::format("[{}] needs '{}': {}", section.name, p.name, p.meaning));
     });
     check_kind(section, table, parameters);
     check(table, parameters);
@@ -238,17 +263,19 @@ struct Reader {
         fail_at(key.source(), fmt::format("'{}' is {}", key.str(), key_belongs_to(section.name, key.str(), kind)));
     visit(parameters, [&](const sim::Parameter& p, auto& value) {
       if (!p.computed && contains(owners(section.name, p.name), kind) && missing(value))
-        fail_at(source_of(table, selector->key), fmt::format("{} '{}' needs the key '{}', {}", selector->noun, kind,
-                                                             p.name, p.meaning));
+        fail_at(source_of(table, selector->key),
+                fmt::format("{} '{}' needs the key '{}', {}", selector->noun, kind, p.name, p.meaning));
     });
   }
 
   template <class P>
   void operator()(const sim::Section& section, P& parameters) const {
     const toml::node* node = root.get(section.name);
-    if (!node && section.required) throw std::runtime_error(fmt::format("{}: the table [{}] is missing", name, section.name));
+    if (!node && section.required)
+      throw std::runtime_error(fmt::format("{}: the table [{}] is missing", name, section.name));
     if (!node) return;
-    if (!node->is_table()) fail_at(node->source(), fmt::format("'{}' must be one table, [{}]", section.name, section.name));
+    if (!node->is_table())
+      fail_at(node->source(), fmt::format("'{}' must be one table, [{}]", section.name, section.name));
     read_table(section, *node->as_table(), parameters);
   }
 
@@ -260,8 +287,9 @@ struct Reader {
     if (!node) return;
     if (const toml::table* table = node->as_table()) return read_table(section, *table, list.emplace_back());
     const toml::array* tables = node->as_array();
-    if (!tables) fail_at(node->source(), fmt::format("'{}' must be a table, [{}] or [[{}]]", section.name, section.name,
-                                                     section.name));
+    if (!tables)
+      fail_at(node->source(),
+              fmt::format("'{}' must be a table, [{}] or [[{}]]", section.name, section.name, section.name));
     for (const toml::node& item : *tables) {
       if (!item.is_table()) fail_at(item.source(), fmt::format("'{}' must hold tables", section.name));
       read_table(section, *item.as_table(), list.emplace_back());
@@ -284,7 +312,8 @@ bool key_applies(std::string_view section, std::string_view key, std::string_vie
 
 std::string key_belongs_to(std::string_view section, std::string_view key, std::string_view kind) {
   std::string names;
-  for (const std::string_view owner : owners(section, key)) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", owner);
+  for (const std::string_view owner : owners(section, key))
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", owner);
   return fmt::format("a key of {} {}, not of '{}'", find_selector(section)->noun, names, kind);
 }
 
@@ -317,11 +346,14 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
     reader.check_together(settings.scene);
     reader.check_names(settings);
   }
-  if (const auto poster = settings.movie.poster; use == SceneUse::simulate && poster && *poster > settings.scene.time.end * (1 + 1e-9)) {
+  if (const auto poster = settings.movie.poster;
+      use == SceneUse::simulate && poster && *poster > settings.scene.time.end * (1 + 1e-9)) {
     const auto [wanted, end] = sim::told_apart(*poster, settings.scene.time.end);
-    fail_at(source_of(*root["movie"].as_table(), "poster"), fmt::format("'poster' must be at most time.end, {}, not {}", end, wanted));
+    fail_at(source_of(*root["movie"].as_table(), "poster"),
+            fmt::format("'poster' must be at most time.end, {}, not {}", end, wanted));
   }
-  if (const double part = settings.movie.time_per_frame, frames = settings.scene.time.end / part; part > 0 && frames > most_frames)
+  if (const double part = settings.movie.time_per_frame, frames = settings.scene.time.end / part;
+      part > 0 && frames > most_frames)
     fail_at(source_of(*root["movie"].as_table(), "time_per_frame"),
             fmt::format("{:.3g} frames are too many; 'time_per_frame' must be longer", frames));
   if (use == SceneUse::simulate && !settings.scene.placements.empty()) try {

@@ -56,8 +56,10 @@ void apply_override(toml::table& scene, const std::string& text) {
     throw std::runtime_error(fmt::format("{}: write it as section.key=value, for example time.end=5", source));
   std::vector<std::string> path(1);
   for (const char c : text.substr(0, equals)) {
-    if (c == '.') path.emplace_back();
-    else if (c != ' ') path.back() += c;
+    if (c == '.')
+      path.emplace_back();
+    else if (c != ' ')
+      path.back() += c;
   }
   const toml::source_region where{{}, {}, std::make_shared<const std::string>(source)};
   const std::string value = text.substr(equals + 1), key = path.back();
@@ -66,7 +68,8 @@ void apply_override(toml::table& scene, const std::string& text) {
     put(table, key, *parsed.get("value"), where);
   };
   if (path.size() == 1) return set_in(scene);
-  if (path.size() > 3) throw std::runtime_error(fmt::format("{}: write it as section.key or section.number.key", source));
+  if (path.size() > 3)
+    throw std::runtime_error(fmt::format("{}: write it as section.key or section.number.key", source));
 
   const std::string& section = path[0];
   if (!scene.contains(section)) {
@@ -89,11 +92,11 @@ void apply_override(toml::table& scene, const std::string& text) {
     throw std::runtime_error(fmt::format("{}: '{}' is not a number, counted from 0", source, path[1]));
   toml::array* list = node.as_array();
   const std::size_t count = list ? list->size() : 1;
-  toml::table* table = list ? (number < count ? list->get(number)->as_table() : nullptr)
-                            : (number == 0 ? node.as_table() : nullptr);
+  toml::table* table =
+      list ? (number < count ? list->get(number)->as_table() : nullptr) : (number == 0 ? node.as_table() : nullptr);
   if (!table)
-    throw std::runtime_error(fmt::format("{}: there is no {} {}; they are numbered from 0 to {}", source, section, number,
-                                         count - 1));
+    throw std::runtime_error(
+        fmt::format("{}: there is no {} {}; they are numbered from 0 to {}", source, section, number, count - 1));
   set_in(*table);
 }
 

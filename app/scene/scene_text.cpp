@@ -21,13 +21,17 @@ std::string toml_value(double value) {
 std::string toml_value(const std::string& value) {
   std::string text = "\"";
   for (const char c : value) {
-    if (c == '"' || c == '\\') text += '\\', text += c;
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) text += fmt::format("\\u{:04x}", c);
-    else text += c;
+    if (c == '"' || c == '\\')
+      text += '\\', text += c;
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      text += fmt::format("\\u{:04x}", c);
+    else
+      text += c;
   }
   // The control characters beyond ASCII, which terminals obey as well.
   for (std::size_t at = 0; (at = text.find('\xc2', at)) != std::string::npos; ++at)
-    if (const auto next = at + 1 < text.size() ? static_cast<unsigned char>(text[at + 1]) : 0; next >= 0x80 && next < 0xa0)
+    if (const auto next = at + 1 < text.size() ? static_cast<unsigned char>(text[at + 1]) : 0;
+        next >= 0x80 && next < 0xa0)
       text.replace(at, 2, fmt::format("\\u{:04x}", next));
   return text + '"';
 }
@@ -38,10 +42,16 @@ std::string toml_value(const sim::Vec3& value) { return toml_value(std::array{va
 
 namespace {
 
-template <class T> std::string kind_of(std::string_view, const T&) { return {}; }
+template <class T>
+std::string kind_of(std::string_view, const T&) {
+  return {};
+}
 std::string kind_of(std::string_view, const sim::FlowParameters& p) { return p.kind; }
 std::string kind_of(std::string_view, const sim::VesicleParameters& p) { return p.shape; }
-template <class T> std::string factor_of(const T&) { return {}; }
+template <class T>
+std::string factor_of(const T&) {
+  return {};
+}
 std::string factor_of(const sim::FlowParameters& p) { return p.time_factor; }
 
 struct Writer {
@@ -57,8 +67,10 @@ struct Writer {
   }
   template <class T>
   void line(const sim::Parameter& parameter, const std::optional<T>& value) {
-    if (value) line(parameter, *value);
-    else if (parameter.refused.empty()) text += fmt::format("# {}: {}\n", parameter.name, parameter.when_absent);
+    if (value)
+      line(parameter, *value);
+    else if (parameter.refused.empty())
+      text += fmt::format("# {}: {}\n", parameter.name, parameter.when_absent);
   }
   template <class P>
   void table(const sim::Section& section, const P& parameters) {
@@ -97,7 +109,8 @@ struct Flattener {
       if (absent) line.remove_prefix(2);
       const std::string_view between = absent ? ": " : " = ";
       const std::size_t at = line.find(between);
-      lines.emplace_back(fmt::format("{}.{}", name, line.substr(0, at)), absent ? "none" : line.substr(at + between.size()));
+      lines.emplace_back(fmt::format("{}.{}", name, line.substr(0, at)),
+                         absent ? "none" : line.substr(at + between.size()));
     }
   }
   template <class P>
@@ -132,9 +145,7 @@ std::string write_scene(const sim::Scene& scene) {
   return writer.text;
 }
 
-std::string physics_hash(const sim::Scene& scene) {
-  return checksum(write_scene(bare(scene)));
-}
+std::string physics_hash(const sim::Scene& scene) { return checksum(write_scene(bare(scene))); }
 
 std::vector<SceneDifference> physics_differences(const sim::Scene& first, const sim::Scene& second) {
   Flattener a, b;
@@ -166,9 +177,8 @@ std::vector<SceneDifference> physics_differences(const sim::Scene& first, const 
 }
 
 bool continuable(const std::vector<SceneDifference>& differences) {
-  return std::all_of(differences.begin(), differences.end(), [](const SceneDifference& d) {
-    return d.key == "time.end" || d.key == "time.save_every";
-  });
+  return std::all_of(differences.begin(), differences.end(),
+                     [](const SceneDifference& d) { return d.key == "time.end" || d.key == "time.save_every"; });
 }
 
 std::string text_of(const std::vector<SceneDifference>& differences) {
@@ -192,8 +202,8 @@ std::vector<std::string> distinct_names(const std::vector<sim::Scene>& scenes, c
       names[members[0]] = title;
       continue;
     }
-    std::vector<std::string> keys;                            // in the order of the scenes' tables
-    std::vector<std::map<std::string, std::string>> values;   // of a member, where they are not those of the first
+    std::vector<std::string> keys;                           // in the order of the scenes' tables
+    std::vector<std::map<std::string, std::string>> values;  // of a member, where they are not those of the first
     std::map<std::string, std::string> firsts;
     for (const std::size_t k : members) {
       values.emplace_back();
@@ -207,13 +217,16 @@ std::vector<std::string> distinct_names(const std::vector<sim::Scene>& scenes, c
       const auto same = [&](const std::string& other) { return last_word(other) == last_word(key); };
       return std::count_if(keys.begin(), keys.end(), same) > 1 ? key : last_word(key);
     };
-    const auto as_read = [](const std::string& value) { return value.ends_with(".0") ? value.substr(0, value.size() - 2) : value; };
+    const auto as_read = [](const std::string& value) {
+      return value.ends_with(".0") ? value.substr(0, value.size() - 2) : value;
+    };
     std::map<std::string, int> times_used;
     for (std::size_t m = 0; m < members.size(); ++m) {
       std::string& name = names[members[m]];
       for (std::size_t i = 0; i < keys.size() && keys.size() <= most_keys; ++i) {
         const auto own = values[m].find(keys[i]);
-        name += fmt::format("{}{} = {}", i > 0 ? ", " : "", short_of(keys[i]), as_read(own == values[m].end() ? firsts[keys[i]] : own->second));
+        name += fmt::format("{}{} = {}", i > 0 ? ", " : "", short_of(keys[i]),
+                            as_read(own == values[m].end() ? firsts[keys[i]] : own->second));
       }
       ++times_used[name];
     }

@@ -17,9 +17,12 @@ std::size_t end_of_quotes(std::string_view text, std::size_t at) {
   const std::string three(3, quote);
   const bool long_text = text.substr(at, 3) == three;
   for (at += long_text ? 3 : 1; at < text.size(); ++at) {
-    if (text[at] == '\\' && quote == '"') ++at;
-    else if (!long_text && text[at] == '\n') return at;
-    else if (!long_text && text[at] == quote) return at + 1;
+    if (text[at] == '\\' && quote == '"')
+      ++at;
+    else if (!long_text && text[at] == '\n')
+      return at;
+    else if (!long_text && text[at] == quote)
+      return at + 1;
     else if (long_text && text.substr(at, 3) == three) {
       at += 3;
       for (int more = 0; more < 2 && at < text.size() && text[at] == quote; ++more) ++at;  // they belong to the text
@@ -58,8 +61,7 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
 
 void fail_at(const toml::source_region& where, std::string_view sentence) {
   const std::string name = where.path ? *where.path : std::string("scene");
-  if (name.starts_with("--set") || !where.begin)
-    throw std::runtime_error(fmt::format("{}: {}", name, sentence));
+  if (name.starts_with("--set") || !where.begin) throw std::runtime_error(fmt::format("{}: {}", name, sentence));
   throw std::runtime_error(fmt::format("{}:{}:{}: {}", name, where.begin.line, where.begin.column, sentence));
 }
 
@@ -84,13 +86,20 @@ namespace {
 
 std::string as_written(const toml::node& node) {
   switch (node.type()) {
-    case toml::node_type::string: return "the text \"" + node.as_string()->get() + "\"";
-    case toml::node_type::integer: return "the number " + std::to_string(node.as_integer()->get());
-    case toml::node_type::floating_point: return fmt::format("the number {}", node.as_floating_point()->get());
-    case toml::node_type::boolean: return node.as_boolean()->get() ? "true" : "false";
-    case toml::node_type::array: return "a list";
-    case toml::node_type::table: return "a table";
-    default: return "a date or time";
+    case toml::node_type::string:
+      return "the text \"" + node.as_string()->get() + "\"";
+    case toml::node_type::integer:
+      return "the number " + std::to_string(node.as_integer()->get());
+    case toml::node_type::floating_point:
+      return fmt::format("the number {}", node.as_floating_point()->get());
+    case toml::node_type::boolean:
+      return node.as_boolean()->get() ? "true" : "false";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::table:
+      return "a table";
+    default:
+      return "a date or time";
   }
 }
 
@@ -116,22 +125,27 @@ void read_value(const sim::Parameter& p, const toml::node& node, int& value) {
   }
   constexpr double largest = 9007199254740992;  // 2^53: whole numbers of type double have all their digits up to there
   std::int64_t number = 0;
-  if (node.is_integer()) number = node.as_integer()->get();
-  else if (const double x = node.is_floating_point() ? node.as_floating_point()->get() : 0.5; std::floor(x) == x && std::abs(x) < largest)
+  if (node.is_integer())
+    number = node.as_integer()->get();
+  else if (const double x = node.is_floating_point() ? node.as_floating_point()->get() : 0.5;
+           std::floor(x) == x && std::abs(x) < largest)
     number = static_cast<std::int64_t>(x);  // 8.0
-  else wrong_type(p, node, p.zero_is_auto ? "\"auto\" or a whole number" : "a whole number");
+  else
+    wrong_type(p, node, p.zero_is_auto ? "\"auto\" or a whole number" : "a whole number");
   if (!(p.zero_is_auto && number == 0)) check_range(p, node, static_cast<double>(number));
   if (number != static_cast<int>(number)) fail_at(node.source(), fmt::format("'{}' is too large: {}", p.name, number));
   value = static_cast<int>(number);
 }
 
 void read_value(const sim::Parameter& p, const toml::node& node, double& value) {
-  if (node.is_integer()) value = static_cast<double>(node.as_integer()->get());
-  else if (node.is_floating_point()) value = node.as_floating_point()->get();
-  else wrong_type(p, node, "a number");
+  if (node.is_integer())
+    value = static_cast<double>(node.as_integer()->get());
+  else if (node.is_floating_point())
+    value = node.as_floating_point()->get();
+  else
+    wrong_type(p, node, "a number");
   check_range(p, node, value);
-  if (std::isinf(value) && p.name != "until")
-    fail_at(node.source(), fmt::format("'{}' must be finite", p.name));
+  if (std::isinf(value) && p.name != "until") fail_at(node.source(), fmt::format("'{}' must be finite", p.name));
 }
 
 void read_value(const sim::Parameter& p, const toml::node& node, std::string& value) {

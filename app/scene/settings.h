@@ -16,7 +16,7 @@ struct Settings {
 
 /// Calls v(const Section&, struct or vector of structs) for each table of a scene file, in its order.
 template <class S, class V>
-  requires std::same_as<std::remove_const_t<S>, Settings>
+requires std::same_as<std::remove_const_t<S>, Settings>
 void visit_sections(S& settings, V&& v) {
   sim::visit_sections(settings.scene, v);
   v(sim::Section{"view", "how a frame looks", false}, settings.view);

@@ -16,7 +16,8 @@ Settings scene_in(const sim::TrajectoryReader& trajectory, const std::filesystem
   };
   const sim::TrajectoryLayout& layout = trajectory.layout();
   if (settings.scene.vesicles.size() != static_cast<std::size_t>(layout.vesicles))
-    wrong(fmt::format("its scene has {} vesicles, its states have {}", settings.scene.vesicles.size(), layout.vesicles));
+    wrong(
+        fmt::format("its scene has {} vesicles, its states have {}", settings.scene.vesicles.size(), layout.vesicles));
   for (const sim::VesicleParameters& v : settings.scene.vesicles)
     if (v.order > layout.order) wrong(fmt::format("its scene has order {}, its states have {}", v.order, layout.order));
   return settings;

@@ -11,6 +11,7 @@ namespace app {
 
 /// With `--set` changes to its pictures applied. Throws std::runtime_error when it is not a scene, or does not match
 /// the states.
-Settings scene_in(const sim::TrajectoryReader&, const std::filesystem::path&, const std::vector<std::string>& changes = {});
+Settings scene_in(const sim::TrajectoryReader&, const std::filesystem::path&,
+                  const std::vector<std::string>& changes = {});
 
 }  // namespace app

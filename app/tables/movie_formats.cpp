@@ -12,21 +12,37 @@ namespace app {
 const std::vector<MovieFormat>& movie_formats() {
   constexpr double any = std::numeric_limits<double>::infinity();
   static const std::vector<MovieFormat> rows{
-      {"mp4", "H.264, plays everywhere; needs even sizes", true, any, "mp4",
+      {"mp4",
+       "H.264, plays everywhere; needs even sizes",
+       true,
+       any,
+       "mp4",
        // Players expect 4:2:0 and the colour matrix of HD.
-       {"-vf", "scale=out_color_matrix=bt709:out_range=tv", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc",
-        "bt709", "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"}},
-      {"mkv", "FFV1, lossless: the very pixels of the frames, for archives and for cutting", false, any, "matroska",
+       {"-vf", "scale=out_color_matrix=bt709:out_range=tv", "-colorspace", "bt709", "-color_primaries", "bt709",
+        "-color_trc", "bt709", "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p",
+        "-movflags", "+faststart"}},
+      {"mkv",
+       "FFV1, lossless: the very pixels of the frames, for archives and for cutting",
+       false,
+       any,
+       "matroska",
        {"-c:v", "ffv1", "-level", "3", "-g", "1", "-slices", "4", "-pix_fmt", "bgr0"}},
-      {"gif", "at most 960 px wide and 25 frames a second, 256 colours a frame, for pages and chats", false, 25, "gif",
+      {"gif",
+       "at most 960 px wide and 25 frames a second, 256 colours a frame, for pages and chats",
+       false,
+       25,
+       "gif",
        {"-filter_complex",
         "scale='min(960,iw)':-1:flags=lanczos,split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:"
         "dither=bayer:bayer_scale=4",
         "-loop", "0"}},
-      {"webp", "animated WebP, at most 1280 px wide and 60 frames a second: smaller and better than gif where it is understood", false, 60,
+      {"webp",
+       "animated WebP, at most 1280 px wide and 60 frames a second: smaller and better than gif where it is understood",
+       false,
+       60,
        "webp",
-       {"-vf", "scale='min(1280,iw)':-1:flags=lanczos", "-c:v", "libwebp_anim", "-quality", "88", "-compression_level", "4",
-        "-loop", "0"}},
+       {"-vf", "scale='min(1280,iw)':-1:flags=lanczos", "-c:v", "libwebp_anim", "-quality", "88", "-compression_level",
+        "4", "-loop", "0"}},
   };
   return rows;
 }
@@ -41,9 +57,10 @@ const MovieFormat& find_movie_format(std::string_view name) {
 
 void check_movie(const MovieFormat& format, int width, int height) {
   if (!format.even_size || (width % 2 == 0 && height % 2 == 0)) return;
-  throw std::invalid_argument(fmt::format("{} (H.264) needs an even width and height, not {} x {}: give --size {}x{}, or "
-                                          "--format mkv, gif or webp", format.name, width, height, width + width % 2,
-                                          height + height % 2));
+  throw std::invalid_argument(
+      fmt::format("{} (H.264) needs an even width and height, not {} x {}: give --size {}x{}, or "
+                  "--format mkv, gif or webp",
+                  format.name, width, height, width + width % 2, height + height % 2));
 }
 
 }  // namespace app

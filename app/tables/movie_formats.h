@@ -8,10 +8,10 @@
 namespace app {
 
 struct MovieFormat {
-  std::string_view name;     ///< also the extension
+  std::string_view name;  ///< also the extension
   std::string_view meaning;
-  bool even_size;            ///< the encoder requires even widths and heights
-  double fastest;            ///< most frames per second that players support; others are dropped
+  bool even_size;  ///< the encoder requires even widths and heights
+  double fastest;  ///< most frames per second that players support; others are dropped
   std::string_view muxer;
   std::vector<std::string> encoder;  ///< arguments of ffmpeg after the input
 };

@@ -51,7 +51,7 @@ constexpr Colour curve_colour(std::size_t curve) { return curve_colours[curve % 
 
 inline constexpr Colour tracer_bright{1.00, 0.84, 0.25};
 inline constexpr Colour tracer_dark{0.13, 0.20, 0.31};
-inline constexpr Colour ink{0.13, 0.15, 0.19};       ///< text on pictures
+inline constexpr Colour ink{0.13, 0.15, 0.19};  ///< text on pictures
 inline constexpr Colour note_ink{0.70, 0.30, 0.08};
 inline constexpr Colour soft_ink{0.36, 0.40, 0.46};  ///< captions
 inline constexpr Colour flow_line_colour{0.50, 0.56, 0.65};

@@ -69,7 +69,8 @@ void visit(P& p, V&& v) {
     p.views);
   v(Parameter{.name = "follow",
               .unit = "",
-              .meaning = "move with the centroid of all, or with one vesicle; auto: when it drifts by more than a few radii",
+              .meaning =
+                  "move with the centroid of all, or with one vesicle; auto: when it drifts by more than a few radii",
               .choices = follow_names},
     p.follow);
   v(Parameter{.name = "follow_vesicle",
@@ -115,7 +116,8 @@ void visit(P& p, V&& v) {
     p.colour_map);
   v(Parameter{.name = "field_range",
               .unit = "",
-              .meaning = "values at both ends of the colour bar; empty: all but the outermost 0.5 % of the whole movie"},
+              .meaning =
+                  "values at both ends of the colour bar; empty: all but the outermost 0.5 % of the whole movie"},
     p.field_range);
   v(Parameter{.name = "opacity",
               .unit = "",
@@ -140,8 +142,10 @@ void visit(P& p, V&& v) {
               .meaning = "colour vesicles in turn, or by a quantity of theirs, on colour_map",
               .choices = colour_by_names},
     p.colour_by);
-  v(Parameter{.name = "size", .unit = "px", .meaning = "width and height of the picture", .minimum = 16, .maximum = 8192},
-    p.size);
+  v(
+      Parameter{
+          .name = "size", .unit = "px", .meaning = "width and height of the picture", .minimum = 16, .maximum = 8192},
+      p.size);
   v(Parameter{.name = "supersampling",
               .unit = "",
               .meaning = "samples along each side of a pixel: 1 draft, 2 movies, 3 stills",
@@ -181,8 +185,9 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "flow_arrows", .unit = "", .meaning = "draw arrows of the background flow"}, p.flow_arrows);
   v(Parameter{.name = "streamlines",
               .unit = "",
-              .meaning = "draw streamlines of the whole flow in place of the arrows, at rest or moving with the vesicles; for "
-                         "stills: they take seconds a frame and are laid anew in each",
+              .meaning =
+                  "draw streamlines of the whole flow in place of the arrows, at rest or moving with the vesicles; for "
+                  "stills: they take seconds a frame and are laid anew in each",
               .choices = streamline_names},
     p.streamlines);
   v(Parameter{.name = "time_stamp", .unit = "", .meaning = "write the time"}, p.time_stamp);
@@ -190,14 +195,18 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "scale_bar", .unit = "", .meaning = "draw a bar one area radius long"}, p.scale_bar);
   v(Parameter{.name = "title", .unit = "", .meaning = "write the title of the scene"}, p.title);
   v(Parameter{.name = "triad", .unit = "", .meaning = "draw the directions of the axes x, y, z"}, p.triad);
-  v(Parameter{.name = "flow_profile", .unit = "", .meaning = "draw the profile of the background flow at the left edge"},
-    p.flow_profile);
-  v(Parameter{.name = "inset", .unit = "", .meaning = "draw the cross-section in the (x, z) plane in a corner"}, p.inset);
+  v(
+      Parameter{
+          .name = "flow_profile", .unit = "", .meaning = "draw the profile of the background flow at the left edge"},
+      p.flow_profile);
+  v(Parameter{.name = "inset", .unit = "", .meaning = "draw the cross-section in the (x, z) plane in a corner"},
+    p.inset);
   v(Parameter{.name = "colour_bar", .unit = "", .meaning = "draw the bar of the style field, or of colour_by"},
     p.colour_bar);
   v(Parameter{.name = "sign_dots",
               .unit = "",
-              .meaning = "fields on a diverging map: fine dots on the side below zero, which tell the sign in grey print"},
+              .meaning =
+                  "fields on a diverging map: fine dots on the side below zero, which tell the sign in grey print"},
     p.sign_dots);
   v(Parameter{.name = "background", .unit = "", .meaning = "the ground behind everything", .choices = background_names},
     p.background);
@@ -213,11 +222,16 @@ struct KeyFrameParameters {
 template <class P, class V>
 requires std::same_as<std::remove_const_t<P>, KeyFrameParameters>
 void visit(P& p, V&& v) {
-  v(Parameter{.name = "time", .unit = "time", .meaning = "when the camera is there", .minimum = 0, .required = true}, p.time);
-  v(Parameter{.name = "azimuth", .unit = "degree", .meaning = "to the right of the flow-gradient view, about the z axis"},
-    p.azimuth);
-  v(Parameter{.name = "elevation", .unit = "degree", .meaning = "above the (x, y) plane", .minimum = -90, .maximum = 90},
-    p.elevation);
+  v(Parameter{.name = "time", .unit = "time", .meaning = "when the camera is there", .minimum = 0, .required = true},
+    p.time);
+  v(
+      Parameter{
+          .name = "azimuth", .unit = "degree", .meaning = "to the right of the flow-gradient view, about the z axis"},
+      p.azimuth);
+  v(
+      Parameter{
+          .name = "elevation", .unit = "degree", .meaning = "above the (x, y) plane", .minimum = -90, .maximum = 90},
+      p.elevation);
   v(Parameter{.name = "zoom", .unit = "", .meaning = "times that of [view]", .minimum = 0.05, .maximum = 50}, p.zoom);
 }
 
@@ -239,10 +253,12 @@ void visit(P& p, V&& v) {
               .minimum = 0,
               .when_absent = "none"},
     p.poster);
-  v(
-      Parameter{
-          .name = "frame_rate", .unit = "1/s", .meaning = "frames per second of the video", .minimum = 0.1, .maximum = 240},
-      p.frame_rate);
+  v(Parameter{.name = "frame_rate",
+              .unit = "1/s",
+              .meaning = "frames per second of the video",
+              .minimum = 0.1,
+              .maximum = 240},
+    p.frame_rate);
   v(Parameter{.name = "time_per_frame",
               .unit = "time",
               .meaning = "simulated time from frame to frame; 0: save_every, one frame a saved state",
@@ -283,10 +299,11 @@ template <class P, class V>
 requires std::same_as<std::remove_const_t<P>, FigureParameters>
 void visit(P& p, V&& v) {
   v(Parameter{.name = "kind", .unit = "", .meaning = "which figure", .catalogue = "figures"}, p.kind);
-  v(
-      Parameter{
-          .name = "out", .unit = "", .meaning = "file name without extension; empty: the name of the kind", .is_path = true},
-      p.out);
+  v(Parameter{.name = "out",
+              .unit = "",
+              .meaning = "file name without extension; empty: the name of the kind",
+              .is_path = true},
+    p.out);
   v(Parameter{.name = "times",
               .unit = "time",
               .meaning = "instants to show; empty: evenly spread over the trajectory",
@@ -298,7 +315,11 @@ void visit(P& p, V&& v) {
               .minimum = 1,
               .maximum = 64},
     p.panels);
-  v(Parameter{.name = "columns", .unit = "", .meaning = "panels in a row; 0: as many as look well", .minimum = 0, .maximum = 64},
+  v(Parameter{.name = "columns",
+              .unit = "",
+              .meaning = "panels in a row; 0: as many as look well",
+              .minimum = 0,
+              .maximum = 64},
     p.columns);
   v(Parameter{.name = "size",
               .unit = "unit",
@@ -306,17 +327,24 @@ void visit(P& p, V&& v) {
               .minimum = 10,
               .maximum = 20000},
     p.size);
-  v(Parameter{.name = "unit", .unit = "", .meaning = "of size: millimetres, or pixels of the PNG", .choices = size_units},
-    p.unit);
-  v(Parameter{.name = "theme", .unit = "", .meaning = "sizes of text and lines, colours, page", .catalogue = "themes"}, p.theme);
+  v(
+      Parameter{
+          .name = "unit", .unit = "", .meaning = "of size: millimetres, or pixels of the PNG", .choices = size_units},
+      p.unit);
+  v(Parameter{.name = "theme", .unit = "", .meaning = "sizes of text and lines, colours, page", .catalogue = "themes"},
+    p.theme);
   v(Parameter{.name = "font_size",
               .unit = "pt",
               .meaning = "of numbers and legends; the rest follows; 0: the theme's",
               .minimum = 0,
               .maximum = 72},
     p.font_size);
-  v(Parameter{.name = "dots_per_inch", .unit = "1/inch", .meaning = "of the PNG, which says so itself", .minimum = 30,
-              .maximum = 2400, .when_absent = "300; 200 for a size in pixels, which is for a screen"},
+  v(Parameter{.name = "dots_per_inch",
+              .unit = "1/inch",
+              .meaning = "of the PNG, which says so itself",
+              .minimum = 30,
+              .maximum = 2400,
+              .when_absent = "300; 200 for a size in pixels, which is for a screen"},
     p.dots_per_inch);
   v(Parameter{.name = "plane_point",
               .unit = "length",
@@ -329,10 +357,7 @@ void visit(P& p, V&& v) {
               .meaning = "of cross-sections: one for all, each round its own state, or common until vesicles drift far",
               .choices = window_names},
     p.window);
-  v(Parameter{.name = "quantities",
-              .unit = "",
-              .meaning = "of time-series, a panel each",
-              .catalogue = "quantities"},
+  v(Parameter{.name = "quantities", .unit = "", .meaning = "of time-series, a panel each", .catalogue = "quantities"},
     p.quantities);
   v(Parameter{.name = "abscissa", .unit = "", .meaning = "of a phase portrait", .catalogue = "quantities"}, p.abscissa);
   v(Parameter{.name = "ordinate", .unit = "", .meaning = "of a phase portrait", .catalogue = "quantities"}, p.ordinate);

@@ -20,11 +20,16 @@ CoveredArea area_of(Overlay overlay) {
   switch (overlay) {
     case Overlay::colour_bar:
       return {.edge = Edge::right, .reach = 0.42, .share_of_width = 0, .low = -0.52, .high = 0.68};
-    case Overlay::triad: return {.edge = Edge::right, .reach = 0.45, .share_of_width = 0, .low = -1, .high = -0.62};
-    case Overlay::inset: return {.edge = Edge::right, .reach = 0.72, .share_of_width = 0, .low = 0.48, .high = 1};
-    case Overlay::profile: return {.edge = Edge::left, .reach = 0, .share_of_width = 0.25, .low = -0.72, .high = 0.78};
-    case Overlay::title: return {.edge = Edge::middle, .reach = 0.8, .share_of_width = 0, .low = 0.80, .high = 1};
-    case Overlay::panel: break;
+    case Overlay::triad:
+      return {.edge = Edge::right, .reach = 0.45, .share_of_width = 0, .low = -1, .high = -0.62};
+    case Overlay::inset:
+      return {.edge = Edge::right, .reach = 0.72, .share_of_width = 0, .low = 0.48, .high = 1};
+    case Overlay::profile:
+      return {.edge = Edge::left, .reach = 0, .share_of_width = 0.25, .low = -0.72, .high = 0.78};
+    case Overlay::title:
+      return {.edge = Edge::middle, .reach = 0.8, .share_of_width = 0, .low = 0.80, .high = 1};
+    case Overlay::panel:
+      break;
   }
   return {.edge = Edge::middle, .reach = 0.35, .share_of_width = 0, .low = -1, .high = -0.80};
 }
@@ -32,9 +37,12 @@ CoveredArea area_of(Overlay overlay) {
 // Half heights of the picture.
 double distance_from(Edge edge, const glm::dvec2& place, double aspect) {
   switch (edge) {
-    case Edge::left: return (1 + place.x) * aspect;
-    case Edge::middle: return std::abs(place.x) * aspect;
-    case Edge::right: break;
+    case Edge::left:
+      return (1 + place.x) * aspect;
+    case Edge::middle:
+      return std::abs(place.x) * aspect;
+    case Edge::right:
+      break;
   }
   return (1 - place.x) * aspect;
 }

@@ -18,15 +18,16 @@ const std::vector<StyleRow>& styles() {
       {"outline", "white membranes with lines and contours only, for print", "FLAT", true, true, false},
       {"ghost", "see-through membranes, lines of the far side visible", "GHOST", true, true, true, true},
       {"field", "a scalar on the membrane, to be read off a colour bar", "FIELD", true, false, true, false, true},
-      {"cutaway", "a plane opens the membranes, their section is drawn as a line", "CUTAWAY", true, true, true, false, false,
-       true},
+      {"cutaway", "a plane opens the membranes, their section is drawn as a line", "CUTAWAY", true, true, true, false,
+       false, true},
   };
   return rows;
 }
 
 const StyleRow& find_style(std::string_view name) {
   if (const StyleRow* row = sim::find_row(styles(), name)) return *row;
-  throw std::invalid_argument("unknown style '" + std::string(name) + "'" + sim::suggestion(name, sim::row_names(styles())));
+  throw std::invalid_argument("unknown style '" + std::string(name) + "'" +
+                              sim::suggestion(name, sim::row_names(styles())));
 }
 
 Colour sign_dot_colour(const Colour& c) {
@@ -58,7 +59,9 @@ std::string body_defines(const StyleRow& style, const ViewParameters& view, std:
                         std::max(cap, middle), middle);
     text += fmt::format("#define CAP_THETA {:.9f}\n#define MIDDLE_THETA {:.9f}\n", spacing, 2 * spacing);
   }
-  if (style.field && sign_dots) text += fmt::format("#define SIGN_DOTS\n#define DOT_RADIUS {}\n#define DOT_FULL {}\n", SignDots::radius, SignDots::full);
+  if (style.field && sign_dots)
+    text += fmt::format("#define SIGN_DOTS\n#define DOT_RADIUS {}\n#define DOT_FULL {}\n", SignDots::radius,
+                        SignDots::full);
   if (view.outline_width > 0) text += "#define CONTOUR\n";
   if (style.tracers && view.tracers && tracers > 0) text += fmt::format("#define TRACERS {}\n", tracers);
   return text;

@@ -36,6 +36,7 @@ double sign_dot_spacing(int height);
 Colour sign_dot_colour(const Colour& under);
 
 /// The #define lines of body.frag for this view; `tracers` dots, `sign_dots` on a field.
-std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers, bool sign_dots = false);
+std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers,
+                         bool sign_dots = false);
 
 }  // namespace render

@@ -38,10 +38,10 @@ std::vector<std::uint32_t> back_to_front(const std::vector<Body>& bodies, const 
   return sorted;
 }
 
-// Going inward from the contour the cosine grows by at most the largest curvature k a length. Where it has reached c, the
-// picture shows the surface at least (1 - sqrt(1 - c^2)) / k inside of the contour.
+// Going inward from the contour the cosine grows by at most the largest curvature k a length. Where it has reached c,
+// the picture shows the surface at least (1 - sqrt(1 - c^2)) / k inside of the contour.
 std::vector<std::uint32_t> rim_triangles(const Mesh& mesh, const Camera& camera, double reach) {
-  constexpr double narrowest = 0.3;   // cosine: wide enough for most
+  constexpr double narrowest = 0.3;     // cosine: wide enough for most
   constexpr float front_enough = 0.1F;  // faces in front of the contour serve for nothing
   const glm::dvec3 eye = camera.place(camera.eye);
   const double away = glm::length(eye);
@@ -57,7 +57,8 @@ std::vector<std::uint32_t> rim_triangles(const Mesh& mesh, const Camera& camera,
     place.emplace_back(p);
     facing.push_back(glm::dot(mesh.normal[k], glm::vec3(glm::normalize(toward))));
   }
-  const double scale = camera.perspective ? std::max(farthest / away, 0.0) : 1;  // of lengths there that look like the reach
+  const double scale =
+      camera.perspective ? std::max(farthest / away, 0.0) : 1;  // of lengths there that look like the reach
   const std::span<const std::uint32_t> indices = mesh.plan->indices();
   std::vector<std::uint32_t> rim;
   for (double cosine = narrowest;;) {
@@ -66,7 +67,8 @@ std::vector<std::uint32_t> rim_triangles(const Mesh& mesh, const Camera& camera,
     float bent = 0;  // the square of the largest curvature
     for (std::size_t i = 0; i < indices.size(); i += 3) {
       const std::uint32_t a = indices[i], b = indices[i + 1], c = indices[i + 2];
-      if (std::max({facing[a], facing[b], facing[c]}) <= least || std::min({facing[a], facing[b], facing[c]}) >= front_enough)
+      if (std::max({facing[a], facing[b], facing[c]}) <= least ||
+          std::min({facing[a], facing[b], facing[c]}) >= front_enough)
         continue;
       rim.insert(rim.end(), {a, b, c});
       for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}}) {

@@ -1,10 +1,10 @@
 #include "render/draw/draw.h"
 
-#include "render/draw/arrow_shape.h"
 #include "render/core/assets.h"
 #include "render/core/places.h"
-#include "render/draw/draw_values.h"
 #include "render/core/style.h"
+#include "render/draw/arrow_shape.h"
+#include "render/draw/draw_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,8 @@ std::vector<glm::dvec2> shadows(const Frame& frame) {
     const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
     for (int j = 0; j < columns; j += stride)
       for (int i = 0; i < rings; i += stride) {
-        const glm::dvec2 place = frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(j * rings + i)]);
+        const glm::dvec2 place =
+            frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(j * rings + i)]);
         places.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
       }
   }
@@ -104,8 +105,9 @@ Renderer::~Renderer() {
 }
 
 PngText Renderer::metadata() const {
-  return {
-      {"back_end", information().back_end}, {"GL_RENDERER", information().renderer}, {"GL_VERSION", information().version}};
+  return {{"back_end", information().back_end},
+          {"GL_RENDERER", information().renderer},
+          {"GL_VERSION", information().version}};
 }
 
 const Program& Renderer::program(const std::string& name, const std::string& defines) {
@@ -125,10 +127,12 @@ const Program& Renderer::program(const std::string& name, const std::string& def
 void Renderer::begin(const Frame& frame) {
   context_.make_current();
   const Gl& gl = context_.gl();
-  const int width = frame.view.size[0] * frame.view.supersampling, height = frame.view.size[1] * frame.view.supersampling;
+  const int width = frame.view.size[0] * frame.view.supersampling,
+            height = frame.view.size[1] * frame.view.supersampling;
   if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height) {
     framebuffer_.reset();
-    constexpr std::size_t of_sample = 16;  // bytes: colour and depth, the copy that is read back, and as much again for the driver
+    constexpr std::size_t of_sample =
+        16;  // bytes: colour and depth, the copy that is read back, and as much again for the driver
     require_memory(of_sample * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     framebuffer_.emplace(gl, width, height);
   }
@@ -196,7 +200,8 @@ void Renderer::draw_arrows(const Frame& frame) {
   shape.bind();
   gl.DrawArraysInstanced(GL_TRIANGLES, 0, rests ? bead_shape_vertices : arrow_shape_vertices,
                          static_cast<GLsizei>(starts.size()));
-  gl.Clear(GL_DEPTH_BUFFER_BIT);  // arrows stand behind everything, though the plane they show goes through the vesicles
+  gl.Clear(
+      GL_DEPTH_BUFFER_BIT);  // arrows stand behind everything, though the plane they show goes through the vesicles
 }
 
 Image Renderer::finish(const Frame& frame) {

@@ -1,9 +1,9 @@
 // The membranes of a frame: solid with outlines, see-through in the order of depth, or cut open.
 #include "render/draw/draw.h"
 
+#include "render/core/style.h"
 #include "render/draw/depth_order.h"
 #include "render/draw/draw_values.h"
-#include "render/core/style.h"
 
 #include <cmath>
 #include <numbers>
@@ -31,8 +31,8 @@ glm::vec3 eye_place(const Camera& camera, const glm::dvec3& point) {
   return camera.view * glm::vec4(glm::vec3(camera.place(point)), 1);
 }
 
-// From pole to pole of the label, so that the dots are as dense as on the bar. In half octaves: a camera that moves does not
-// shift them all the time.
+// From pole to pole of the label, so that the dots are as dense as on the bar. In half octaves: a camera that moves
+// does not shift them all the time.
 double sign_dot_rows(const Frame& frame, const Body& body) {
   const double radius = body.mesh.area_radius / frame.camera.half_height * frame.view.size[1] / 2;  // px
   const double wanted = std::numbers::pi * radius / sign_dot_spacing(frame.view.size[1]);
@@ -99,7 +99,8 @@ std::vector<std::uint32_t> Renderer::rim_of(const Frame& frame, const Body& body
   return rim_triangles(body.mesh, frame.camera, 2 * (widest + slack) / framebuffer_->height());
 }
 
-void Renderer::draw_outline(const Frame& frame, const Body& body, const std::vector<std::uint32_t>& rim, OutlinePart part) {
+void Renderer::draw_outline(const Frame& frame, const Body& body, const std::vector<std::uint32_t>& rim,
+                            OutlinePart part) {
   const Gl& gl = context_.gl();
   const Program& p = program("outline", "");
   p.use();
@@ -185,7 +186,8 @@ void Renderer::draw_ghosts(const Frame& frame) {
   gl.Disable(GL_BLEND);
 }
 
-void Renderer::draw_ribbon(const Camera& camera, std::span<const glm::dvec3> points, bool closed, float reach, double nearer) {
+void Renderer::draw_ribbon(const Camera& camera, std::span<const glm::dvec3> points, bool closed, float reach,
+                           double nearer) {
   const glm::dvec2 sample(2.0 / framebuffer_->width(), 2.0 / framebuffer_->height());  // clip units
   const std::size_t n = points.size();
   if (n < 2) return;
@@ -231,11 +233,12 @@ void Renderer::draw_flow_lines(const Frame& frame) {
     draw_ribbon(frame.camera, line.points, line.closed, half_width + 1, 0);
     for (const std::size_t k : line.heads) {
       if (k == 0 || k + 1 >= line.points.size()) continue;
-      const glm::dvec3 along = glm::normalize(line.points[k + 1] - line.points[k - 1]), side = glm::cross(toward, along);
+      const glm::dvec3 along = glm::normalize(line.points[k + 1] - line.points[k - 1]),
+                       side = glm::cross(toward, along);
       std::vector<glm::vec4> corners;
-      for (const glm::dvec3& corner : {line.points[k] - 0.5 * head * along + 0.36 * head * side,
-                                       line.points[k] - 0.5 * head * along - 0.36 * head * side,
-                                       line.points[k] + 0.5 * head * along})
+      for (const glm::dvec3& corner :
+           {line.points[k] - 0.5 * head * along + 0.36 * head * side,
+            line.points[k] - 0.5 * head * along - 0.36 * head * side, line.points[k] + 0.5 * head * along})
         corners.emplace_back(frame.camera.clip(corner));
       ribbons_.attribute(0, corners);
       ribbons_.attribute(1, std::vector<float>(3, 0.0F));
@@ -296,7 +299,8 @@ void Renderer::draw_bodies(const Frame& frame) {
     draw_outline(frame, body, rims.back(), OutlinePart::core);
   }
   if (!outlined) return;
-  // Two hulls more make thirds of a sample at the outer edge. They let through what lies behind: all of that is there now.
+  // Two hulls more make thirds of a sample at the outer edge. They let through what lies behind: all of that is there
+  // now.
   const Gl& gl = context_.gl();
   gl.Enable(GL_BLEND);
   gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);

@@ -29,7 +29,8 @@ void check(cairo_status_t status, const std::filesystem::path& path) {
   if (status != CAIRO_STATUS_SUCCESS) throw std::runtime_error(path.string() + ": " + cairo_status_to_string(status));
 }
 
-void paint(cairo_surface_t* surface, const Drawing& drawing, double scale, const Font& font, const std::filesystem::path& path) {
+void paint(cairo_surface_t* surface, const Drawing& drawing, double scale, const Font& font,
+           const std::filesystem::path& path) {
   const Context cairo(cairo_create(surface));
   cairo_scale(cairo.get(), scale, scale);
   cairo_set_source_rgb(cairo.get(), drawing.ground.r, drawing.ground.g, drawing.ground.b);
@@ -42,11 +43,16 @@ void paint(cairo_surface_t* surface, const Drawing& drawing, double scale, const
 std::string xml_text(std::string_view text) {
   std::string safe;
   for (const char c : text) {
-    if (c == '&') safe += "&amp;";
-    else if (c == '<') safe += "&lt;";
-    else if (c == '>') safe += "&gt;";
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) safe += ' ';
-    else safe += c;
+    if (c == '&')
+      safe += "&amp;";
+    else if (c == '<')
+      safe += "&lt;";
+    else if (c == '>')
+      safe += "&gt;";
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      safe += ' ';
+    else
+      safe += c;
   }
   return safe;
 }
@@ -57,13 +63,14 @@ std::string text_element(const PageText& t) {
   const auto channel = [](double v) { return static_cast<int>(std::lround(255 * v)); };
   const cairo_matrix_t& m = t.place;
   const bool plain = m.xx == 1 && m.yx == 0 && m.xy == 0 && m.yy == 1 && m.x0 == 0 && m.y0 == 0;
-  const std::string moved = plain ? "" : fmt::format(" transform=\"matrix({:.6g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g})\"", m.xx, m.yx,
-                                                     m.xy, m.yy, m.x0, m.y0);
-  std::string element =
-      fmt::format("<text xml:space=\"preserve\"{} x=\"{:.6g}\" y=\"{:.6g}\" font-family=\"'DejaVu Sans', Verdana, sans-serif\" font-size=\"{:.6g}\" text-anchor=\"{}\" "
-                  "fill=\"#{:02x}{:02x}{:02x}\"",
-                  moved, t.x, t.y, t.size,
-                  anchors[static_cast<int>(t.align)], channel(t.red), channel(t.green), channel(t.blue));
+  const std::string moved = plain ? ""
+                                  : fmt::format(" transform=\"matrix({:.6g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g})\"",
+                                                m.xx, m.yx, m.xy, m.yy, m.x0, m.y0);
+  std::string element = fmt::format(
+      "<text xml:space=\"preserve\"{} x=\"{:.6g}\" y=\"{:.6g}\" font-family=\"'DejaVu Sans', Verdana, sans-serif\" "
+      "font-size=\"{:.6g}\" text-anchor=\"{}\" "
+      "fill=\"#{:02x}{:02x}{:02x}\"",
+      moved, t.x, t.y, t.size, anchors[static_cast<int>(t.align)], channel(t.red), channel(t.green), channel(t.blue));
   if (t.alpha < 1) element += fmt::format(" fill-opacity=\"{:.3g}\"", t.alpha);
   element += ">";
   double shift = 0;  // of the baseline, upward
@@ -75,7 +82,8 @@ std::string text_element(const PageText& t) {
       element += xml_text(run.text);
       continue;
     }
-    element += fmt::format("<tspan dy=\"{:.6g}\" font-size=\"{:.6g}\">{}</tspan>", -rise, run.size() * t.size, xml_text(run.text));
+    element += fmt::format("<tspan dy=\"{:.6g}\" font-size=\"{:.6g}\">{}</tspan>", -rise, run.size() * t.size,
+                           xml_text(run.text));
   }
   return element + "</text>\n";
 }
@@ -94,8 +102,8 @@ std::string name_at(const std::string& svg, std::size_t at) {
   return svg.substr(at, end - at);
 }
 
-/// Cairo numbers pictures, masks and whatever else has an id through the life of the process, each version others of them:
-/// here all are numbered through the file, each kind in the order in which they are defined.
+/// Cairo numbers pictures, masks and whatever else has an id through the life of the process, each version others of
+/// them: here all are numbered through the file, each kind in the order in which they are defined.
 std::string renumbered(const std::string& svg) {
   constexpr std::string_view definition = " id=\"";
   std::map<std::string, std::string> names;

@@ -1,8 +1,8 @@
 // A drawing in points, rendered to PNG, SVG and PDF by the same function.
 #pragma once
 
-#include "render/image/image.h"
 #include "render/core/palette.h"
+#include "render/image/image.h"
 #include "render/image/text.h"
 
 #include <filesystem>
@@ -24,7 +24,9 @@ struct Drawing {
 /// text above everything else.
 void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text = {},
                        const sim::FileWriter& write = sim::write_file);
-void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write = sim::write_file);
-void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write = sim::write_file);
+void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing,
+                       const sim::FileWriter& write = sim::write_file);
+void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing,
+                       const sim::FileWriter& write = sim::write_file);
 
 }  // namespace render

@@ -16,15 +16,18 @@ namespace render {
 const std::vector<FigureRow>& figures() {
   static const std::vector<FigureRow> rows{
       {"cross-sections", "sections with a plane, one panel an instant", FigureNeeds::instants, draw_cross_sections},
-      {"overlay", "the same sections over each other in one panel, coloured by time", FigureNeeds::instants, draw_overlay},
+      {"overlay", "the same sections over each other in one panel, coloured by time", FigureNeeds::instants,
+       draw_overlay},
       {"snapshots", "a sheet of pictures at one scale, one panel an instant", FigureNeeds::stills, draw_snapshots},
-      {"streamlines", "streamlines in a plane, of the whole flow, over its speed there (the part along the plane)", FigureNeeds::flow, draw_streamlines},
-      {"inclination", "angle between the flow and the longest axis in the shear plane against time", FigureNeeds::all_states,
-       draw_inclination},
+      {"streamlines", "streamlines in a plane, of the whole flow, over its speed there (the part along the plane)",
+       FigureNeeds::flow, draw_streamlines},
+      {"inclination", "angle between the flow and the longest axis in the shear plane against time",
+       FigureNeeds::all_states, draw_inclination},
       {"time-series", "chosen quantities against time, one panel each", FigureNeeds::series, draw_time_series},
       {"phase", "one quantity against another in the course of time", FigureNeeds::plots, draw_plots},
       {"spectra", "position and mean curvature, degree by degree", FigureNeeds::plots, draw_plots},
-      {"tank-treading", "angle and frequency of tank-treading against reduced volume, one trajectory a point, beside the literature",
+      {"tank-treading",
+       "angle and frequency of tank-treading against reduced volume, one trajectory a point, beside the literature",
        FigureNeeds::plots, draw_plots},
   };
   return rows;
@@ -45,11 +48,12 @@ Page page_of(const FigureParameters& p) {
   if (!p.size.empty()) page.width = p.size[0] * points;
   if (p.size.size() == 2) page.height = p.size[1] * points;
   if (p.size.empty()) page.height = page.theme.height;
-  // A slide is shown as large as the screen whatever its size: its text goes with the page. Print has text of one size, but
-  // for pages too narrow for it.
+  // A slide is shown as large as the screen whatever its size: its text goes with the page. Print has text of one size,
+  // but for pages too narrow for it.
   double font_size = p.font_size;
   if (font_size == 0 && page.width > 0)
-    font_size = page.theme.height > 0 ? page.theme.text * page.width / page.theme.width : std::min(page.theme.text, page.width / 24);
+    font_size = page.theme.height > 0 ? page.theme.text * page.width / page.theme.width
+                                      : std::min(page.theme.text, page.width / 24);
   page.theme = find_theme(p.theme, font_size);
   return page;
 }
@@ -66,13 +70,15 @@ std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, c
         throw std::invalid_argument(
             fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {} for figure.times", last, wanted));
       }
-      const auto nearest = std::min_element(state_times.begin(), state_times.end(),
-                                            [&](double a, double b) { return std::abs(a - time) < std::abs(b - time); });
+      const auto nearest = std::min_element(state_times.begin(), state_times.end(), [&](double a, double b) {
+        return std::abs(a - time) < std::abs(b - time);
+      });
       chosen.push_back(static_cast<std::size_t>(nearest - state_times.begin()));
     }
     return chosen;
   }
-  const std::size_t panels = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(parameters.panels, 1)), 1, count);
+  const std::size_t panels =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::max(parameters.panels, 1)), 1, count);
   for (std::size_t k = 0; k < panels; ++k) {
     const double place = panels == 1 ? 0 : static_cast<double>(k * (count - 1)) / static_cast<double>(panels - 1);
     chosen.push_back(static_cast<std::size_t>(std::lround(place)));
@@ -129,7 +135,8 @@ std::string letter(std::size_t k) {
 }
 
 Colour colour_of_time(double t) {
-  constexpr std::array<Colour, 4> stops{{{0.10, 0.17, 0.42}, {0.00, 0.45, 0.62}, {0.20, 0.66, 0.45}, {0.93, 0.62, 0.13}}};
+  constexpr std::array<Colour, 4> stops{
+      {{0.10, 0.17, 0.42}, {0.00, 0.45, 0.62}, {0.20, 0.66, 0.45}, {0.93, 0.62, 0.13}}};
   return between(stops, t);
 }
 

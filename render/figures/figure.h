@@ -1,8 +1,8 @@
 // Figures for papers and slides: a catalogue of kinds, each drawn from values, written as PNG, SVG, PDF and CSV.
 #pragma once
 
-#include "render/figures/canvas.h"
 #include "render/core/parameters.h"
+#include "render/figures/canvas.h"
 #include "render/figures/plot_marks.h"
 #include "render/figures/streamlines.h"
 
@@ -29,12 +29,12 @@ struct Series {
 struct Curve {
   std::string name;  ///< in the legend; empty: not there
   std::vector<double> x, y;
-  std::vector<double> error;     ///< half lengths of bars; empty: none
-  std::size_t colour = 0;        ///< number of the palette
-  std::optional<double> instant; ///< 0..1: a colour between early and late instead of the palette
+  std::vector<double> error;      ///< half lengths of bars; empty: none
+  std::size_t colour = 0;         ///< number of the palette
+  std::optional<double> instant;  ///< 0..1: a colour between early and late instead of the palette
   std::optional<Marker> marker;
   bool line = true, dashed = false;
-  std::string csv_name = {};     ///< in the CSV; empty: the name, or the curve's number
+  std::string csv_name = {};  ///< in the CSV; empty: the name, or the curve's number
 };
 struct Plot {
   Axis x, y;  ///< on a logarithmic axis the curves contain the values themselves
@@ -48,11 +48,11 @@ struct FlowPicture {
   CutPlane plane;  ///< origin: zero of the coordinates of lines and speeds
   Range x, y;      ///< the window, in lengths of the scene
   std::vector<Streamline> lines;
-  sim::Matrix speed;  ///< on a net of cells, row 0 at the top; empty: no background
+  sim::Matrix speed;                  ///< on a net of cells, row 0 at the top; empty: no background
   std::array<Range, 2> speed_window;  ///< covered by the cells, along x and y
   std::string speed_label = "|u|";
-  double speed_factor = 1;   ///< shown speed = this x speed
-  double spacing = 0.2;      ///< of the lines, length
+  double speed_factor = 1;           ///< shown speed = this x speed
+  double spacing = 0.2;              ///< of the lines, length
   std::vector<std::string> remarks;  ///< first lines of the CSV
 };
 
@@ -133,7 +133,8 @@ std::string csv_cell(const std::string& text);
 inline constexpr const char* figure_extensions[] = {".png", ".svg", ".pdf", ".csv"};
 /// stem.png, stem.svg, stem.pdf, stem.csv; returns the four paths. `text` is stored in the PNG. Throws
 /// std::runtime_error with path and reason.
-std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem, const PngText& text = {},
-                                               const sim::FileWriter& write = sim::write_file);
+std::vector<std::filesystem::path> write_figure(const Figure& figure, const std::filesystem::path& stem,
+                                                const PngText& text = {},
+                                                const sim::FileWriter& write = sim::write_file);
 
 }  // namespace render

@@ -28,7 +28,9 @@ std::string csv_of(const std::vector<Plot>& plots) {
   for (std::size_t k = 0; k < plots.size(); ++k)
     for (std::size_t c = 0; c < plots[k].curves.size(); ++c) {
       const Curve& curve = plots[k].curves[c];
-      const std::string name = csv_cell(!curve.csv_name.empty() ? curve.csv_name : curve.name.empty() ? std::to_string(c) : curve.name);
+      const std::string name = csv_cell(!curve.csv_name.empty() ? curve.csv_name
+                                        : curve.name.empty()    ? std::to_string(c)
+                                                                : curve.name);
       for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
         text += fmt::format("{},{},{:.10g},{:.10g},{}\n", csv_cell(plots[k].y.label), name, curve.x[i], curve.y[i],
                             i < curve.error.size() ? fmt::format("{:.6g}", curve.error[i]) : "");
@@ -81,7 +83,8 @@ Figure draw_inclination(const FigureInput& input) {
     for (const sim::State& state : input.states) {
       if (v >= state.vesicles.size()) continue;
       all[v].times.push_back(input.time_factor * state.time);
-      all[v].values.push_back(sim::inclination(volume_moments(state.vesicles[v].position).second) * 180 / std::numbers::pi);
+      all[v].values.push_back(sim::inclination(volume_moments(state.vesicles[v].position).second) * 180 /
+                              std::numbers::pi);
     }
   }
   std::string csv = csv_of(all);

@@ -119,7 +119,8 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
   const Theme& theme = page.theme;
   const Ruler ruler;
   const std::size_t count = s.cuts.size(), rows = (count + columns - 1) / columns;
-  const double gap = 1.2 * theme.text, title = title_height(theme), legend = input.labels.empty() ? 0 : 1.8 * theme.text;
+  const double gap = 1.2 * theme.text, title = title_height(theme),
+               legend = input.labels.empty() ? 0 : 1.8 * theme.text;
   const double page_width = page.width > 0 ? page.width : theme.width;
   Strip strip;
   for (std::size_t k = 0; k < count; ++k) {
@@ -144,11 +145,13 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
     // A few panels do not grow beyond half of the page, unless its size was asked for.
     const double across = static_cast<double>(page.width > 0 ? columns : std::max<std::size_t>(columns, 2));
     scale = free_width / across / (2 * s.half_x);
-    const double down = m.bottom + legend + title * static_cast<double>(rows) + 0.3 * theme.text * static_cast<double>(rows - 1);
+    const double down =
+        m.bottom + legend + title * static_cast<double>(rows) + 0.3 * theme.text * static_cast<double>(rows - 1);
     if (page.height > 0) scale = std::min(scale, (page.height - down) / static_cast<double>(rows) / (2 * s.half_y));
     scale = std::max(scale, 1.0);
     const double width = 2 * s.half_x * scale, height = 2 * s.half_y * scale;
-    const double used = m.left + m.right + width * static_cast<double>(columns) + gap * static_cast<double>(columns - 1);
+    const double used =
+        m.left + m.right + width * static_cast<double>(columns) + gap * static_cast<double>(columns - 1);
     strip.width = page.width > 0 || page.height > 0 ? page_width : std::ceil(used);
     const double used_height = down + height * static_cast<double>(rows);
     strip.height = page.height > 0 ? page.height : std::ceil(used_height);
@@ -163,14 +166,18 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
   }
   // Labels wider than their panel stand once, in the middle; titles too long for it lose their time.
   const Panel& panel = strip.panels.front();
-  const auto fits = [&](const std::string& text, double room) { return ruler.width(theme.label, text) < room + 0.5 * gap; };
+  const auto fits = [&](const std::string& text, double room) {
+    return ruler.width(theme.label, text) < room + 0.5 * gap;
+  };
   bool long_titles = false;
   for (std::size_t k = 0; k < count; ++k) {
     strip.titles.push_back(fmt::format("({})  {}", letter(k), time_text(input, s.times[k])));
     long_titles = long_titles || !fits(strip.titles.back(), panel.width);
     Axes& axes = strip.axes[k];
-    if (!axes.x.label.empty() && !fits(axes.x.label, 0.8 * panel.width) && k % columns != (columns - 1) / 2) axes.x.label.clear();
-    if (!axes.y.label.empty() && !fits(axes.y.label, panel.height + title) && k / columns != (rows - 1) / 2) axes.y.label.clear();
+    if (!axes.x.label.empty() && !fits(axes.x.label, 0.8 * panel.width) && k % columns != (columns - 1) / 2)
+      axes.x.label.clear();
+    if (!axes.y.label.empty() && !fits(axes.y.label, panel.height + title) && k / columns != (rows - 1) / 2)
+      axes.y.label.clear();
   }
   if (long_titles)
     for (std::size_t k = 0; k < count; ++k) strip.titles[k] = fmt::format("({})", letter(k));
@@ -179,7 +186,8 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
 
 std::vector<LegendEntry> vesicle_legend(const FigureInput& input, const Theme& theme) {
   std::vector<LegendEntry> entries;
-  for (std::size_t v = 0; v < input.labels.size(); ++v) entries.push_back({input.labels[v], vesicle_colour(theme, v), {}, false});
+  for (std::size_t v = 0; v < input.labels.size(); ++v)
+    entries.push_back({input.labels[v], vesicle_colour(theme, v), {}, false});
   return entries;
 }
 
@@ -226,9 +234,11 @@ Figure draw_overlay(const FigureInput& input) {
   std::vector<LegendEntry> entries;
   const double first = s->times.front(), span = std::max(s->times.back() - first, 1e-300);
   for (std::size_t k = 0; k < s->cuts.size(); ++k)
-    entries.push_back({time_text(input, s->times[k]), on_ground(theme, colour_of_time((s->times[k] - first) / span)), {}, false});
+    entries.push_back(
+        {time_text(input, s->times[k]), on_ground(theme, colour_of_time((s->times[k] - first) / span)), {}, false});
   const std::vector<LegendEntry> colours = entries;
-  if (entries.size() > 14) entries = {entries.front(), entries[entries.size() / 2], entries.back()};  // the ends tell the rest
+  if (entries.size() > 14)
+    entries = {entries.front(), entries[entries.size() / 2], entries.back()};  // the ends tell the rest
   const Axes axes{{axis_label(s->right, input, s->follows), Scale::linear, true, true},
                   {axis_label(s->up, input, s->follows), Scale::linear, true, true},
                   0};
@@ -251,7 +261,8 @@ Figure draw_overlay(const FigureInput& input) {
   Figure figure;
   figure.csv = csv_of(*s);
   figure.drawing = {page_width, page_height, nullptr, theme.ground, dots_per_inch(input.parameters)};
-  figure.drawing.paint = [s, entries, colours, panel, axes, legend, theme = page.theme](cairo_t* cairo, const Font& font) {
+  figure.drawing.paint = [s, entries, colours, panel, axes, legend, theme = page.theme](cairo_t* cairo,
+                                                                                        const Font& font) {
     const Pen pen{cairo, font, theme};
     draw_grid(pen, panel, axes);
     for (std::size_t k = 0; k < s->cuts.size(); ++k)

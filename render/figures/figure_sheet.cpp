@@ -1,6 +1,6 @@
 // A sheet of pictures, (a) to (h), all at one scale.
-#include "render/scene/framing.h"
 #include "render/figures/figure_kinds.h"
+#include "render/scene/framing.h"
 
 #include <fmt/format.h>
 
@@ -123,7 +123,8 @@ Sheet sheet_layout(const FigureInput& input) {
                        .space = 0.3 * theme.text};
   const ViewAxes axes = find_camera(input.camera).axes;
   const SheetNeeds needs = needs_of(input, axes);
-  const std::size_t most = input.parameters.columns > 0 ? static_cast<std::size_t>(input.parameters.columns) : needs.widths.size();
+  const std::size_t most =
+      input.parameters.columns > 0 ? static_cast<std::size_t>(input.parameters.columns) : needs.widths.size();
   const auto [ends, scale] = fitted_rows(needs, page, most);
 
   Sheet sheet;
@@ -158,7 +159,8 @@ Sheet sheet_layout(const FigureInput& input) {
 
 Figure draw_snapshots(const FigureInput& input) {
   const Sheet sheet = sheet_layout(input);
-  if (input.stills.size() != sheet.panels.size()) throw std::invalid_argument("a sheet of snapshots needs one picture a state");
+  if (input.stills.size() != sheet.panels.size())
+    throw std::invalid_argument("a sheet of snapshots needs one picture a state");
   const Page page = page_of(input.parameters);
   Figure figure;
   figure.csv = "panel,time,vesicle,center_x,center_y,center_z\n";
@@ -167,12 +169,13 @@ Figure draw_snapshots(const FigureInput& input) {
       sim::State one;
       one.vesicles = {input.states[k].vesicles[v]};
       const glm::dvec3 c = summarize(one).centroid / input.length;
-      figure.csv += fmt::format("{},{:.10g},{},{:.10g},{:.10g},{:.10g}\n", letter(k), input.time_factor * input.states[k].time, v, c.x, c.y, c.z);
+      figure.csv += fmt::format("{},{:.10g},{},{:.10g},{:.10g},{:.10g}\n", letter(k),
+                                input.time_factor * input.states[k].time, v, c.x, c.y, c.z);
     }
   const auto stills = std::make_shared<const std::vector<Image>>(input.stills);
   figure.drawing = {sheet.width, sheet.height, nullptr, page.theme.ground, dots_per_inch(input.parameters)};
-  figure.drawing.paint = [sheet, stills, input_length = input.length, symbol = input.length_symbol,
-                          theme = page.theme](cairo_t* cairo, const Font& font) {
+  figure.drawing.paint = [sheet, stills, input_length = input.length, symbol = input.length_symbol, theme = page.theme](
+                             cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     for (std::size_t k = 0; k < sheet.panels.size(); ++k) {
       const SheetPanel& p = sheet.panels[k];
@@ -189,7 +192,8 @@ Figure draw_snapshots(const FigureInput& input) {
     }
     // A bar one unit long in the first panel: all panels have one scale. It stands on the picture, which is light.
     const SheetPanel& p = sheet.panels.front();
-    const double bar = sheet.scale * input_length, x = p.left + 0.9 * theme.text, y = p.top + p.height - 0.9 * theme.text;
+    const double bar = sheet.scale * input_length, x = p.left + 0.9 * theme.text,
+                 y = p.top + p.height - 0.9 * theme.text;
     cairo_set_source_rgb(cairo, ink.r, ink.g, ink.b);
     cairo_rectangle(cairo, x, y - 0.18 * theme.text, bar, 0.18 * theme.text);
     cairo_fill(cairo);

@@ -70,7 +70,8 @@ Range range_of(const std::vector<double>& values, double margin, double least) {
     if (std::isfinite(v)) r = {std::min(r.low, v), std::max(r.high, v)};
   if (r.low > r.high) return {0, 1};
   const double size = std::max(std::abs(r.low), std::abs(r.high));
-  const double half = std::max({r.size() / 2 * (1 + 2 * margin), least / 2, 1e-12 * size}), middle = (r.low + r.high) / 2;
+  const double half = std::max({r.size() / 2 * (1 + 2 * margin), least / 2, 1e-12 * size}),
+               middle = (r.low + r.high) / 2;
   if (half == 0) return {-1, 1};
   return {middle - half, middle + half};
 }
@@ -93,7 +94,8 @@ std::vector<double> logarithms(const std::vector<double>& values) {
   return logs;
 }
 
-Ticks ticks_of(const Ruler& ruler, const Theme& theme, const Axis& axis, const Range& range, double length, bool horizontal) {
+Ticks ticks_of(const Ruler& ruler, const Theme& theme, const Axis& axis, const Range& range, double length,
+               bool horizontal) {
   const auto measured = [&](std::vector<double> values) {
     Ticks t{std::move(values), {}, 0};
     t.texts = tick_texts(t.values, axis.scale);
@@ -120,7 +122,8 @@ Ticks ticks_of(const Ruler& ruler, const Theme& theme, const Axis& axis, const R
     if (std::vector<double> v = tick_values(range, wanted, axis.scale); v.size() >= 2)
       if (Ticks t = measured({v.front(), v.back()}); fits(t)) return t;
   for (int wanted = 1; wanted <= 6; ++wanted)
-    if (const std::vector<double> v = tick_values(range, wanted, axis.scale); !v.empty()) return measured({v[v.size() / 2]});
+    if (const std::vector<double> v = tick_values(range, wanted, axis.scale); !v.empty())
+      return measured({v[v.size() / 2]});
   return {};
 }
 
@@ -171,7 +174,8 @@ void draw_axes(const Pen& pen, const Panel& p, const Axes& axes) {
   cairo_set_line_width(cairo, theme.line);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT);
   cairo_set_line_join(cairo, CAIRO_LINE_JOIN_MITER);
-  const Ticks xs = ticks_of(ruler, theme, axes.x, p.x, p.width, true), ys = ticks_of(ruler, theme, axes.y, p.y, p.height, false);
+  const Ticks xs = ticks_of(ruler, theme, axes.x, p.x, p.width, true),
+              ys = ticks_of(ruler, theme, axes.y, p.y, p.height, false);
   const auto mark = [&](bool horizontal, double v, double length) {
     const Range& range = horizontal ? p.x : p.y;
     if (v < range.low - 1e-9 * range.size() || v > range.high + 1e-9 * range.size()) return;
@@ -196,18 +200,20 @@ void draw_axes(const Pen& pen, const Panel& p, const Axes& axes) {
   cairo_stroke(cairo);
   if (axes.x.numbers)
     for (std::size_t k = 0; k < xs.values.size(); ++k)
-      draw_text(cairo, pen.font, theme.text, p.page_x(xs.values[k]), p.top + p.height + (number_gap + 1) * theme.text, xs.texts[k],
-                Align::centre);
+      draw_text(cairo, pen.font, theme.text, p.page_x(xs.values[k]), p.top + p.height + (number_gap + 1) * theme.text,
+                xs.texts[k], Align::centre);
   if (axes.y.numbers)
     for (std::size_t k = 0; k < ys.values.size(); ++k)
-      draw_text(cairo, pen.font, theme.text, p.left - number_gap * theme.text, p.page_y(ys.values[k]) + 0.36 * theme.text,
-                ys.texts[k], Align::right);
+      draw_text(cairo, pen.font, theme.text, p.left - number_gap * theme.text,
+                p.page_y(ys.values[k]) + 0.36 * theme.text, ys.texts[k], Align::right);
   if (!axes.x.label.empty())
     draw_text(cairo, pen.font, theme.label, p.left + p.width / 2,
-              p.top + p.height + (axes.x.numbers ? (number_gap + 1.3) * theme.text : 0) + 1.15 * theme.label, axes.x.label,
-              Align::centre);
+              p.top + p.height + (axes.x.numbers ? (number_gap + 1.3) * theme.text : 0) + 1.15 * theme.label,
+              axes.x.label, Align::centre);
   if (axes.y.label.empty()) return;
-  const double beside = axes.label_room > 0 ? axes.label_room : axes.y.numbers ? ys.widest + number_gap * theme.text : 0;
+  const double beside = axes.label_room > 0 ? axes.label_room
+                        : axes.y.numbers    ? ys.widest + number_gap * theme.text
+                                            : 0;
   cairo_save(cairo);
   cairo_translate(cairo, p.left - beside - 0.6 * theme.label, p.top + p.height / 2);
   cairo_rotate(cairo, -std::numbers::pi / 2);

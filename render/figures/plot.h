@@ -1,8 +1,8 @@
 // One panel of a figure: a window of data coordinates in a rectangle of the page, with frame, ticks and labels.
 #pragma once
 
-#include "render/image/text.h"
 #include "render/figures/theme.h"
+#include "render/image/text.h"
 
 #include <string>
 #include <vector>
@@ -42,8 +42,8 @@ class Ruler {
   std::shared_ptr<cairo_t> cairo_;
 };
 
-/// linear: multiples of 1, 2, 2.5 or 5 times a power of ten. degrees: of 5, 15, 30, 45... logarithmic: the coordinate is the
-/// decimal logarithm, ticks at decades.
+/// linear: multiples of 1, 2, 2.5 or 5 times a power of ten. degrees: of 5, 15, 30, 45... logarithmic: the coordinate
+/// is the decimal logarithm, ticks at decades.
 enum class Scale { linear, degrees, logarithmic };
 
 /// About `wanted` round numbers inside the range.
@@ -66,7 +66,8 @@ struct Axis {
 };
 struct Axes {
   Axis x, y;
-  double label_room = 0;  ///< from the panel's left edge to the y label, pt; 0: beside the widest number. Aligns stacked panels.
+  double label_room =
+      0;  ///< from the panel's left edge to the y label, pt; 0: beside the widest number. Aligns stacked panels.
 };
 
 /// Ticks of an axis `length` long on which no two numbers touch.
@@ -75,7 +76,8 @@ struct Ticks {
   std::vector<std::string> texts;
   double widest = 0;  ///< pt
 };
-Ticks ticks_of(const Ruler& ruler, const Theme& theme, const Axis& axis, const Range& range, double length, bool horizontal);
+Ticks ticks_of(const Ruler& ruler, const Theme& theme, const Axis& axis, const Range& range, double length,
+               bool horizontal);
 
 /// Space taken by numbers and labels outside the panel, pt.
 struct Margins {

@@ -79,10 +79,18 @@ void marker_path(cairo_t* cairo, Marker marker, double x, double y, double r) {
   };
   switch (marker) {
     case Marker::dot:
-    case Marker::ring: cairo_arc(cairo, x, y, r, 0, 2 * std::numbers::pi); break;
-    case Marker::square: polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}); break;
-    case Marker::diamond: polygon({{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}}); break;
-    case Marker::triangle: polygon({{0, -1.25}, {1.1, 0.75}, {-1.1, 0.75}}); break;
+    case Marker::ring:
+      cairo_arc(cairo, x, y, r, 0, 2 * std::numbers::pi);
+      break;
+    case Marker::square:
+      polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}});
+      break;
+    case Marker::diamond:
+      polygon({{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}});
+      break;
+    case Marker::triangle:
+      polygon({{0, -1.25}, {1.1, 0.75}, {-1.1, 0.75}});
+      break;
   }
 }
 
@@ -99,8 +107,8 @@ void draw_marker(const Pen& pen, Marker marker, double x, double y, const Colour
 
 }  // namespace
 
-void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y, Marker marker,
-                  const Colour& colour, double radius, const std::vector<double>& error) {
+void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                  Marker marker, const Colour& colour, double radius, const std::vector<double>& error) {
   for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) {
     if (!std::isfinite(x[k]) || !std::isfinite(y[k])) continue;
     if (k < error.size() && error[k] > 0) {
@@ -121,7 +129,8 @@ void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>&
   }
 }
 
-void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height, bool smooth) {
+void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height,
+                  bool smooth) {
   cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height);
   unsigned char* data = cairo_image_surface_get_data(surface);
   if (data == nullptr) {
@@ -224,7 +233,8 @@ std::optional<Corner> empty_corner(const Panel& p, const Eigen::Vector2d& size,
         if (i == 0 || !std::isfinite(x[i - 1]) || !std::isfinite(y[i - 1])) continue;
         const double x0 = p.page_x(x[i - 1]), y0 = p.page_y(y[i - 1]);
         const int pieces = std::clamp(static_cast<int>(std::hypot(x1 - x0, y1 - y0) / 4), 1, 100);
-        for (int k = 1; empty && k < pieces; ++k) empty = !holds(corner, x0 + (x1 - x0) * k / pieces, y0 + (y1 - y0) * k / pieces);
+        for (int k = 1; empty && k < pieces; ++k)
+          empty = !holds(corner, x0 + (x1 - x0) * k / pieces, y0 + (y1 - y0) * k / pieces);
       }
     if (empty) return corner;
   }

@@ -1,8 +1,8 @@
 // Contents of a panel: curves, markers, pictures, and the legend.
 #pragma once
 
-#include "render/image/image.h"
 #include "render/figures/plot.h"
+#include "render/image/image.h"
 #include "render/scene/section.h"
 
 #include <optional>
@@ -23,10 +23,11 @@ void draw_closed_curve(const Pen& pen, const Panel& panel, const ClosedCurve& cu
                        const Stroke& stroke, double fill_opacity = 0);
 enum class Marker { dot, square, diamond, triangle, ring };
 /// radius: in units of the theme's stroke. error: half length of a bar in y; empty: none.
-void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y, Marker marker,
-                  const Colour& colour, double radius = 1.8, const std::vector<double>& error = {});
+void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                  Marker marker, const Colour& colour, double radius = 1.8, const std::vector<double>& error = {});
 /// An RGB picture in a rectangle of the page; smooth: interpolated when enlarged.
-void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height, bool smooth = true);
+void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height,
+                  bool smooth = true);
 
 /// One line of a legend.
 struct LegendEntry {

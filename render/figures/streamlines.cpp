@@ -15,7 +15,11 @@ using Vec2 = Eigen::Vector2d;
 class Cells {
  public:
   Cells(const Range& x, const Range& y, double size)
-      : x_(x.low), y_(y.low), size_(size), columns_(count(x)), rows_(count(y)),
+      : x_(x.low),
+        y_(y.low),
+        size_(size),
+        columns_(count(x)),
+        rows_(count(y)),
         cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
 
   void add(const Vec2& p) { cells_[index(column(p), row(p))].push_back(p); }
@@ -33,7 +37,9 @@ class Cells {
   int count(const Range& r) const { return std::max(1, static_cast<int>(std::ceil(r.size() / size_))); }
   int column(const Vec2& p) const { return std::clamp(static_cast<int>((p.x() - x_) / size_), 0, columns_ - 1); }
   int row(const Vec2& p) const { return std::clamp(static_cast<int>((p.y() - y_) / size_), 0, rows_ - 1); }
-  std::size_t index(int c, int r) const { return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c); }
+  std::size_t index(int c, int r) const {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c);
+  }
 
   double x_, y_, size_;
   int columns_, rows_;
@@ -111,8 +117,11 @@ End trace(const Tracer& tracer, const Vec2& seed, const Range& x, const Range& y
   if (!start) return End::rest;
   Place p{seed, *start};
   double h = longest / 2, travelled = 0;
-  const auto inside = [&](const Vec2& q) { return q.x() >= x.low && q.x() <= x.high && q.y() >= y.low && q.y() <= y.high; };
-  // Points of the line itself count as a neighbour but for its last stretch and the surroundings of the seed, where it closes.
+  const auto inside = [&](const Vec2& q) {
+    return q.x() >= x.low && q.x() <= x.high && q.y() >= y.low && q.y() <= y.high;
+  };
+  // Points of the line itself count as a neighbour but for its last stretch and the surroundings of the seed, where it
+  // closes.
   const auto meets_itself = [&](const Vec2& q) {
     if ((q - seed).norm() < 0.6 * o.spacing) return false;
     double back = 0;
@@ -180,7 +189,8 @@ std::vector<Streamline> streamlines(const PlaneFlow& flow, const Range& x, const
   std::deque<Vec2> waiting(seeds.begin(), seeds.end());
   waiting.push_back({(x.low + x.high) / 2, (y.low + y.high) / 2});
   // A net of further seeds finds pockets that no line passes.
-  const int columns = static_cast<int>(std::ceil(x.size() / o.spacing)), rows = static_cast<int>(std::ceil(y.size() / o.spacing));
+  const int columns = static_cast<int>(std::ceil(x.size() / o.spacing)),
+            rows = static_cast<int>(std::ceil(y.size() / o.spacing));
   std::vector<Vec2> net;
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c)
@@ -202,14 +212,15 @@ std::vector<Streamline> streamlines(const PlaneFlow& flow, const Range& x, const
     if (end == End::closed) {  // the little that is missing is spread over the whole loop
       const Vec2 miss = ahead.back() - seed;
       ahead.pop_back();
-      for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] -= static_cast<double>(i + 1) / static_cast<double>(ahead.size() + 1) * miss;
+      for (std::size_t i = 0; i < ahead.size(); ++i)
+        ahead[i] -= static_cast<double>(i + 1) / static_cast<double>(ahead.size() + 1) * miss;
     }
     std::vector<Vec2> all(back.rbegin(), back.rend());
     all.push_back(seed);
     all.insert(all.end(), ahead.begin(), ahead.end());
     if (length_of(all) < o.shortest * o.spacing) continue;
-    Streamline line{sim::Matrix(static_cast<Eigen::Index>(all.size()), 2), sim::Vector(static_cast<Eigen::Index>(all.size())),
-                    end == End::closed};
+    Streamline line{sim::Matrix(static_cast<Eigen::Index>(all.size()), 2),
+                    sim::Vector(static_cast<Eigen::Index>(all.size())), end == End::closed};
     double since = o.spacing;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);

@@ -37,7 +37,8 @@ const std::vector<Theme>& themes() {
 Theme find_theme(std::string_view name, double font_size) {
   const Theme* row = sim::find_row(themes(), name);
   if (!row)
-    throw std::invalid_argument("unknown theme '" + std::string(name) + "'" + sim::suggestion(name, sim::row_names(themes())));
+    throw std::invalid_argument("unknown theme '" + std::string(name) + "'" +
+                                sim::suggestion(name, sim::row_names(themes())));
   Theme theme = *row;
   if (font_size > 0) {
     const double factor = font_size / theme.text;

@@ -10,13 +10,13 @@ namespace render {
 struct Theme {
   std::string_view name;
   std::string_view meaning;
-  double text = 9;            ///< numbers at ticks, legends; pt
-  double label = 10.5;        ///< names of axes, titles of panels; pt
-  double line = 0.9;          ///< frame and ticks; pt
-  double stroke = 1.6;        ///< curves; pt
-  double tick = 4.5;          ///< length; pt
-  double width = 510;         ///< of a full-width page, pt
-  double height = 0;          ///< of a page; 0: follows the content
+  double text = 9;      ///< numbers at ticks, legends; pt
+  double label = 10.5;  ///< names of axes, titles of panels; pt
+  double line = 0.9;    ///< frame and ticks; pt
+  double stroke = 1.6;  ///< curves; pt
+  double tick = 4.5;    ///< length; pt
+  double width = 510;   ///< of a full-width page, pt
+  double height = 0;    ///< of a page; 0: follows the content
   Colour ground = white;
   Colour ink{0.10, 0.10, 0.12};
   Colour soft{0.42, 0.44, 0.48};   ///< secondary elements: references, frames of pictures

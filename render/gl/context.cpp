@@ -74,7 +74,8 @@ void require_memory(std::size_t bytes) {
   // Address space alone: it is given back at once, and pages are never touched.
   void* probe = ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (probe == MAP_FAILED)
-    throw std::runtime_error("there is not enough memory to draw: about " + std::to_string(bytes >> 20) + " MiB more are needed");
+    throw std::runtime_error("there is not enough memory to draw: about " + std::to_string(bytes >> 20) +
+                             " MiB more are needed");
   ::munmap(probe, bytes);
 }
 
@@ -93,8 +94,7 @@ GlContext::GlContext(const GlChoice& choice) {
   for (const char* rasteriser : {"llvmpipe", "softpipe", "swrast"})
     information_.software = information_.software || information_.renderer.find(rasteriser) != std::string::npos;
   if (choice.kind == "software" && !information_.software)
-    throw std::runtime_error("--gl software found only " + information_.renderer +
-                             ": " + egl_packages);
+    throw std::runtime_error("--gl software found only " + information_.renderer + ": " + egl_packages);
 }
 
 GlContext::~GlContext() = default;

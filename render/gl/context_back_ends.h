@@ -15,7 +15,8 @@ struct GlUnavailable : std::exception {
 /// File names to try, in this order.
 using LibraryNames = std::vector<const char*>;
 /// How to install EGL on Debian or Ubuntu; every release has these packages.
-constexpr const char* egl_packages = "install the packages libegl1 and libgl1-mesa-dri (apt install libegl1 libgl1-mesa-dri)";
+constexpr const char* egl_packages =
+    "install the packages libegl1 and libgl1-mesa-dri (apt install libegl1 libgl1-mesa-dri)";
 
 inline const LibraryNames osmesa_libraries{"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"};
 inline const LibraryNames egl_libraries{"libEGL.so.1", "libEGL.so"};

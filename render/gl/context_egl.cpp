@@ -39,9 +39,11 @@ Egl load_egl(const LibraryNames& names) {
   if (!egl.Name) throw GlUnavailable("the installed libEGL lacks egl" #Name);
   RENDER_EGL_FUNCTIONS(RENDER_EGL_LOAD)
 #undef RENDER_EGL_LOAD
-  egl.GetPlatformDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.GetProcAddress("eglGetPlatformDisplayEXT"));
+  egl.GetPlatformDisplay =
+      reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.GetProcAddress("eglGetPlatformDisplayEXT"));
   egl.QueryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl.GetProcAddress("eglQueryDevicesEXT"));
-  egl.QueryDeviceString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(egl.GetProcAddress("eglQueryDeviceStringEXT"));
+  egl.QueryDeviceString =
+      reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(egl.GetProcAddress("eglQueryDeviceStringEXT"));
   if (!egl.GetPlatformDisplay) throw GlUnavailable("the installed libEGL cannot work without a window system");
   return egl;
 }
@@ -67,7 +69,8 @@ bool make_current(void* o) {
 std::shared_ptr<Object> try_display(const Egl& egl, EGLDisplay display) {
   EGLint major = 0, minor = 0;
   if (display == EGL_NO_DISPLAY || !egl.Initialize(display, &major, &minor) || !egl.BindAPI(EGL_OPENGL_API)) return {};
-  const std::array<EGLint, 5> config_wanted{EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  const std::array<EGLint, 5> config_wanted{EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                            EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (!egl.ChooseConfig(display, config_wanted.data(), &config, 1, &count) || count == 0) config = EGL_NO_CONFIG_KHR;
@@ -95,8 +98,8 @@ GlContext::BackEnd open_egl(EglDevices which, int device, const LibraryNames& na
   EGLint count = 0;
   if (egl.QueryDevices) egl.QueryDevices(static_cast<EGLint>(devices.size()), devices.data(), &count);
   if (which == EglDevices::one && (device < 0 || device >= count))
-    throw GlUnavailable("there is no EGL device " + std::to_string(device) + "; this machine has " + std::to_string(count) +
-                        (count > 0 ? ", counted from 0" : ""));
+    throw GlUnavailable("there is no EGL device " + std::to_string(device) + "; this machine has " +
+                        std::to_string(count) + (count > 0 ? ", counted from 0" : ""));
   for (EGLint i = 0; i < count; ++i) {
     if (which == EglDevices::one && i != device) continue;
     const EGLDeviceEXT d = devices[static_cast<std::size_t>(i)];
@@ -108,7 +111,8 @@ GlContext::BackEnd open_egl(EglDevices which, int device, const LibraryNames& na
   }
   if (which == EglDevices::one)
     throw GlUnavailable("EGL device " + std::to_string(device) + " gives no OpenGL 3.3 core context");
-  if (auto object = try_display(egl, egl.GetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)))
+  if (auto object =
+          try_display(egl, egl.GetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)))
     return back_end(std::move(object), "EGL surfaceless");
   throw GlUnavailable(std::string("EGL finds no device with OpenGL 3.3 core: ") + egl_packages);
 }

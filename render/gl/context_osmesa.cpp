@@ -28,7 +28,8 @@ struct Library {
 
 Library load_osmesa(const LibraryNames& names) {
   void* handle = open_library(names);
-  if (!handle) throw GlUnavailable("OSMesa is not installed, and newer systems do not offer it: --gl egl draws the same pixels");
+  if (!handle)
+    throw GlUnavailable("OSMesa is not installed, and newer systems do not offer it: --gl egl draws the same pixels");
   Library l;
   l.create = reinterpret_cast<CreateContext>(::dlsym(handle, "OSMesaCreateContextAttribs"));
   l.make_current = reinterpret_cast<MakeCurrent>(::dlsym(handle, "OSMesaMakeCurrent"));

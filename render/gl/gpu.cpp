@@ -25,7 +25,8 @@ GLuint compile(const Gl& gl, GLenum kind, std::string_view name, const std::stri
 
 }  // namespace
 
-Program::Program(const Gl& gl, std::string_view name, const std::string& vertex, const std::string& fragment) : gl_(&gl) {
+Program::Program(const Gl& gl, std::string_view name, const std::string& vertex, const std::string& fragment)
+    : gl_(&gl) {
   const GLuint v = compile(gl, GL_VERTEX_SHADER, name, vertex);
   GLuint f = 0;
   try {

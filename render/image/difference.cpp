@@ -16,8 +16,8 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 void check_same_size(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throw std::invalid_argument(fmt::format("pictures of different size: {}x{} and {}x{}", a.width, a.height, b.width,
-                                            b.height));
+    throw std::invalid_argument(
+        fmt::format("pictures of different size: {}x{} and {}x{}", a.width, a.height, b.width, b.height));
 }
 
 /// Channel c of a pixel; a picture without alpha is opaque.
@@ -29,18 +29,27 @@ bool counts(const Ignored& ignored, std::size_t pixel) { return ignored.empty() 
 
 std::span<const ComparePreset> compare_presets() {
   static const std::array<ComparePreset, 3> presets{
-      {{"exact", "every channel of every pixel is equal", {.channel = 0, .pixels = 0, .share = 0, .largest = 0, .rmse = 0}},
+      {{"exact",
+        "every channel of every pixel is equal",
+        {.channel = 0, .pixels = 0, .share = 0, .largest = 0, .rmse = 0}},
        {"default", "equal but for rounding: other processors, other versions of the drawing libraries", {}},
-       {"perceptual", "no difference that stays visible when one flips between the two (FLIP)",
-        {.pixels = unlimited, .largest = unlimited, .rmse = unlimited, .flip_mean = 0.05, .flip_max = 0.4, .flip_spot = 0.15}}}};
+       {"perceptual",
+        "no difference that stays visible when one flips between the two (FLIP)",
+        {.pixels = unlimited,
+         .largest = unlimited,
+         .rmse = unlimited,
+         .flip_mean = 0.05,
+         .flip_max = 0.4,
+         .flip_spot = 0.15}}}};
   return presets;
 }
 
 void check_limit(std::string_view name, double value) {
   const bool sight = name == "ppd";
   if (sight ? value >= flip_least_ppd && value <= flip_most_ppd : value >= 0) return;  // NaN is neither
-  throw std::invalid_argument(sight ? fmt::format("{} pixels per degree are not between {} and {}", value, flip_least_ppd, flip_most_ppd)
-                                    : fmt::format("{} is not a limit: it is 0 or more, or inf to lift it", value));
+  throw std::invalid_argument(
+      sight ? fmt::format("{} pixels per degree are not between {} and {}", value, flip_least_ppd, flip_most_ppd)
+            : fmt::format("{} is not a limit: it is 0 or more, or inf to lift it", value));
 }
 
 namespace {
@@ -92,7 +101,8 @@ void measure_samples(const PngFile& a, const PngFile& b, const CompareRule& rule
   }
   result.maximum = maximum / unit;
   // Three samples a pixel, with or without alpha: a channel that is equal must not dilute what the others differ by.
-  result.spot = result.above > 0 && std::int64_t{16} * (result.right - result.left) * (result.bottom - result.top) <= result.compared;
+  result.spot = result.above > 0 &&
+                std::int64_t{16} * (result.right - result.left) * (result.bottom - result.top) <= result.compared;
   const double samples = 3 * static_cast<double>(result.compared);
   result.rmse = samples > 0 ? std::sqrt(static_cast<double>(squares) / samples) / unit : 0;
 }
@@ -107,9 +117,11 @@ ImageDifference difference(const PngFile& a, const PngFile& b, const CompareRule
   (wide ? measure_samples<SixteenBits> : measure_samples<EightBits>)(a, b, rule, ignored, look, result);
   const auto said = [](const std::string& text, const char* otherwise) { return text.empty() ? otherwise : text; };
   if (a.colours != b.colours)
-    result.declared.push_back(fmt::format("its numbers mean {} instead of {}", said(b.colours, "sRGB"), said(a.colours, "sRGB")));
+    result.declared.push_back(
+        fmt::format("its numbers mean {} instead of {}", said(b.colours, "sRGB"), said(a.colours, "sRGB")));
   if (a.animation != b.animation)
-    result.declared.push_back(fmt::format("an animation: {} instead of {}", said(b.animation, "a still"), said(a.animation, "a still")));
+    result.declared.push_back(
+        fmt::format("an animation: {} instead of {}", said(b.animation, "a still"), said(a.animation, "a still")));
   if (rule.flip_mean == unlimited && rule.flip_max == unlimited && rule.flip_spot == unlimited) return result;
   result.flip_mean = result.flip_max = 0;
   if (result.maximum == 0) return result;
@@ -119,7 +131,8 @@ ImageDifference difference(const PngFile& a, const PngFile& b, const CompareRule
     auto value = map.begin();
     for (int y = tile.top; y < tile.bottom; ++y)
       for (int x = tile.left; x < tile.right; ++x, ++value) {
-        if (!counts(ignored, static_cast<std::size_t>(y) * static_cast<std::size_t>(a.image.width) + static_cast<std::size_t>(x)))
+        if (!counts(ignored, static_cast<std::size_t>(y) * static_cast<std::size_t>(a.image.width) +
+                                 static_cast<std::size_t>(x)))
           continue;
         total += static_cast<double>(*value);
         result.flip_max = std::max(*result.flip_max, static_cast<double>(*value));
@@ -144,7 +157,8 @@ std::vector<std::string> objections(const ImageDifference& d, const CompareRule&
   if (!within(static_cast<double>(d.above), allowed))
     all.push_back(fmt::format("{} pixel{} differ{} by more than {} (allowed: {})", d.above, d.above == 1 ? "" : "s",
                               d.above == 1 ? "s" : "", rule.channel, allowed));
-  if (!within(d.maximum, rule.largest)) all.push_back(fmt::format("a pixel differs by {:.4g} (allowed: {:g})", d.maximum, rule.largest));
+  if (!within(d.maximum, rule.largest))
+    all.push_back(fmt::format("a pixel differs by {:.4g} (allowed: {:g})", d.maximum, rule.largest));
   if (!within(d.rmse, rule.rmse)) all.push_back(fmt::format("rmse {:.4g} (allowed: {:g})", d.rmse, rule.rmse));
   if (!within(d.flip_mean.value_or(0), rule.flip_mean))
     all.push_back(fmt::format("mean FLIP {:.4g} (allowed: {:g})", *d.flip_mean, rule.flip_mean));
@@ -166,9 +180,10 @@ Image difference_image(const Image& a, const Image& b, int gain, const Ignored& 
       const std::uint8_t *p = a.at(x, y), *q = b.at(x, y);
       const int alpha = std::abs(channel(a, p, 3) - channel(b, q, 3));
       for (int c = 0; c < 3; ++c)
-        result.at(x, y)[c] = counts(ignored, pixel)
-                                 ? static_cast<std::uint8_t>(std::min(255, gain * std::max(alpha, std::abs(p[c] - q[c]))))
-                                 : unseen[c];
+        result.at(x, y)[c] =
+            counts(ignored, pixel)
+                ? static_cast<std::uint8_t>(std::min(255, gain * std::max(alpha, std::abs(p[c] - q[c]))))
+                : unseen[c];
     }
   return result;
 }

@@ -35,8 +35,7 @@ constexpr double from_xyz[3][3] = {{3.24100323297636, -1.53739896948879, -0.4986
 
 Triple times(const double (&m)[3][3], const Triple& v) {
   Triple r{};
-  for (std::size_t i = 0; i < 3; ++i)
-    r[i] = static_cast<float>(m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2]);
+  for (std::size_t i = 0; i < 3; ++i) r[i] = static_cast<float>(m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2]);
   return r;
 }
 
@@ -66,9 +65,7 @@ Triple hunt_lab_of(const Triple& rgb) {
 }
 
 /// City block in lightness, Euclid in colour.
-float hyab(const Triple& a, const Triple& b) {
-  return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
-}
+float hyab(const Triple& a, const Triple& b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
 
 // --- filters, all sums of products of one-dimensional ones; the border pixel continues outside ---------------------
 
@@ -79,7 +76,8 @@ void along_rows(const Plane& in, Plane& out, Size size, const Kernel& kernel) {
   std::vector<float> padded(static_cast<std::size_t>(w + 2 * radius));
   for (int y = 0; y < size.height; ++y) {
     const float* row = in.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(w);
-    for (int i = 0; i < w + 2 * radius; ++i) padded[static_cast<std::size_t>(i)] = row[std::clamp(i - radius, 0, w - 1)];
+    for (int i = 0; i < w + 2 * radius; ++i)
+      padded[static_cast<std::size_t>(i)] = row[std::clamp(i - radius, 0, w - 1)];
     float* result = out.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(w);
     std::fill(result, result + w, 0.F);
     for (std::size_t k = 0; k < kernel.size(); ++k)
@@ -126,10 +124,13 @@ double sum(const Kernel& k) {
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
-constexpr Sensitivity achromatic{1, 0.0047, 0, 1e-5}, red_green{1, 0.0053, 0, 1e-5}, blue_yellow{34.1, 0.04, 13.5, 0.025};
+constexpr Sensitivity achromatic{1, 0.0047, 0, 1e-5}, red_green{1, 0.0053, 0, 1e-5},
+    blue_yellow{34.1, 0.04, 13.5, 0.025};
 
 /// Three standard deviations of the widest of these filters, for all.
-int radius_of_sight(double ppd) { return static_cast<int>(std::ceil(3 * std::sqrt(blue_yellow.b1 / (2 * pi * pi)) * ppd)); }
+int radius_of_sight(double ppd) {
+  return static_cast<int>(std::ceil(3 * std::sqrt(blue_yellow.b1 / (2 * pi * pi)) * ppd));
+}
 
 Plane seen(const Plane& in, Size size, const Sensitivity& s, double ppd) {
   const int radius = radius_of_sight(ppd);
@@ -202,7 +203,8 @@ Planes ycxcz_planes(const Image& image) {
 
 /// What is left of the colours at that distance, as Hunt-adjusted CIELAB.
 Planes seen_colours(const Planes& in, Size size, double ppd) {
-  Planes out{seen(in[0], size, achromatic, ppd), seen(in[1], size, red_green, ppd), seen(in[2], size, blue_yellow, ppd)};
+  Planes out{seen(in[0], size, achromatic, ppd), seen(in[1], size, red_green, ppd),
+             seen(in[2], size, blue_yellow, ppd)};
   for (std::size_t i = 0; i < size.pixels(); ++i) {
     Triple rgb = rgb_of_ycxcz({out[0][i], out[1][i], out[2][i]});
     for (float& c : rgb) c = std::clamp(c, 0.F, 1.F);
@@ -235,7 +237,9 @@ std::vector<float> flip_at_once(const Image& reference, const Image& test, doubl
     const float e = std::pow(hyab(at(0), at(1)), qc);
     const float colour = e < knee ? pt / knee * e : pt + (e - knee) / (largest - knee) * (1 - pt);
     const float feature = std::pow(std::max(std::abs(features[0].edges[i] - features[1].edges[i]),
-                                            std::abs(features[0].points[i] - features[1].points[i])) / std::sqrt(2.F), qf);
+                                            std::abs(features[0].points[i] - features[1].points[i])) /
+                                       std::sqrt(2.F),
+                                   qf);
     map[i] = std::min(std::pow(colour, 1 - feature), 1.F);
   }
   return map;
@@ -252,7 +256,8 @@ Image cut(const Image& image, const FlipTile& t) {
 void hide(const FlipTile& t, const Ignored& ignored, int width, Image& reference, Image& test) {
   for (int y = t.top; y < t.bottom; ++y)
     for (int x = t.left; x < t.right; ++x) {
-      if (ignored[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] == 0) continue;
+      if (ignored[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] == 0)
+        continue;
       std::uint8_t *from = reference.at(x - t.left, y - t.top), *to = test.at(x - t.left, y - t.top);
       if (reference.channels > test.channels) from[3] = 255;
       for (int c = 0; c < test.channels; ++c) to[c] = c < reference.channels ? from[c] : 255;
@@ -264,21 +269,23 @@ bool equal_pictures(const Image& a, const Image& b) {
   if (a.channels == b.channels) return a.pixels == b.pixels;
   const Image &three = a.channels == 3 ? a : b, &four = a.channels == 3 ? b : a;
   for (std::size_t i = 0, n = three.pixels.size() / 3; i < n; ++i)
-    if (!std::equal(&three.pixels[3 * i], &three.pixels[3 * i] + 3, &four.pixels[4 * i]) || four.pixels[4 * i + 3] != 255)
+    if (!std::equal(&three.pixels[3 * i], &three.pixels[3 * i] + 3, &four.pixels[4 * i]) ||
+        four.pixels[4 * i + 3] != 255)
       return false;
   return true;
 }
 
 }  // namespace
 
-void flip_by_tiles(const Image& reference, const Image& test, double ppd, const Ignored& ignored, const FlipVisitor& visit) {
+void flip_by_tiles(const Image& reference, const Image& test, double ppd, const Ignored& ignored,
+                   const FlipVisitor& visit) {
   if (reference.width != test.width || reference.height != test.height)
     throw std::invalid_argument("FLIP needs pictures of one size");
   if (!(ppd >= flip_least_ppd && ppd <= flip_most_ppd))
     throw std::invalid_argument(
         fmt::format("FLIP is defined here for {} to {} pixels per degree, not {}", flip_least_ppd, flip_most_ppd, ppd));
-  // Each pixel of the map depends on its surroundings as far as the widest filter reaches: a tile is computed with so much
-  // more on each side, where there is more, and gets the very bits that it would get in the whole picture.
+  // Each pixel of the map depends on its surroundings as far as the widest filter reaches: a tile is computed with so
+  // much more on each side, where there is more, and gets the very bits that it would get in the whole picture.
   const int reach = std::max(radius_of_sight(ppd), radius_of_edges(ppd)), side = std::max(192, 4 * reach);
   const int width = reference.width, height = reference.height;
   for (int top = 0; top < height; top += side)
@@ -290,10 +297,12 @@ void flip_by_tiles(const Image& reference, const Image& test, double ppd, const 
       if (!ignored.empty()) hide(wide, ignored, width, before, after);
       const bool equal = equal_pictures(before, after);  // the map is zero then
       const std::vector<float> map = equal ? std::vector<float>() : flip_at_once(before, after, ppd);
-      std::vector<float> core(static_cast<std::size_t>(tile.right - left) * static_cast<std::size_t>(tile.bottom - top));
+      std::vector<float> core(static_cast<std::size_t>(tile.right - left) *
+                              static_cast<std::size_t>(tile.bottom - top));
       auto out = core.begin();
       for (int y = top; y < tile.bottom && !equal; ++y) {
-        const auto row = map.begin() + static_cast<std::ptrdiff_t>(y - wide.top) * (wide.right - wide.left) + (left - wide.left);
+        const auto row =
+            map.begin() + static_cast<std::ptrdiff_t>(y - wide.top) * (wide.right - wide.left) + (left - wide.left);
         out = std::copy(row, row + (tile.right - left), out);
       }
       visit(tile, core);

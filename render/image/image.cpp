@@ -42,8 +42,8 @@ void add_row(const std::uint8_t* source, int blocks, int factor, const std::arra
 }
 
 // 2 x 2 samples of four bytes, the case of every movie. Most blocks are of one colour, which needs no sums.
-void halve_row(const std::uint8_t* upper, const std::uint8_t* lower, int blocks, std::uint64_t scale, const Tables& table,
-               std::uint8_t* out) {
+void halve_row(const std::uint8_t* upper, const std::uint8_t* lower, int blocks, std::uint64_t scale,
+               const Tables& table, std::uint8_t* out) {
   for (int x = 0; x < blocks; ++x, upper += 8, lower += 8, out += 3) {
     std::uint64_t a = 0, b = 0;
     std::memcpy(&a, upper, 8);

@@ -27,8 +27,9 @@ struct Image {
         channels(c),
         pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c)) {}
   std::uint8_t* at(int x, int y) {
-    return pixels.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
-                               static_cast<std::size_t>(channels);
+    return pixels.data() +
+           (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
+               static_cast<std::size_t>(channels);
   }
   const std::uint8_t* at(int x, int y) const { return const_cast<Image*>(this)->at(x, y); }
   friend bool operator==(const Image&, const Image&) = default;
@@ -47,7 +48,8 @@ using PngText = std::vector<std::pair<std::string, std::string>>;
 /// flat, smooth pictures. dots_per_inch: recorded physical resolution; 0: none.
 inline constexpr int default_compression = 6;
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text = {},
-               int compression = default_compression, double dots_per_inch = 0, const sim::FileWriter& write = sim::write_file);
+               int compression = default_compression, double dots_per_inch = 0,
+               const sim::FileWriter& write = sim::write_file);
 
 /// The bytes of such a file.
 std::string png_bytes(const Image& image, const PngText& text = {}, int compression = default_compression,
@@ -57,7 +59,8 @@ struct PngFile {
   Image image;  ///< RGB, or RGBA when the file has transparency
   PngText text;
   std::vector<std::uint8_t> lower_bytes;  ///< of 16-bit samples, whose upper bytes are the image; else empty
-  std::string colours;    ///< other than sRGB, the file declares its samples to be this: "gamma 1", "ICC profile 'P3' (12ab34cd)"
+  std::string
+      colours;  ///< other than sRGB, the file declares its samples to be this: "gamma 1", "ICC profile 'P3' (12ab34cd)"
   std::string animation;  ///< number of frames and their checksum; empty: a still
 };
 /// Throws std::runtime_error with one sentence: cannot be opened, is not a PNG file (with its actual format), is

@@ -1,6 +1,5 @@
 #include "render/image/image.h"
 
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <png.h>
@@ -51,8 +50,8 @@ std::vector<png_text> chunks_of(const PngText& text) {
   return chunks;
 }
 
-bool write_stream(std::FILE* file, const Image& image, std::vector<png_text>& chunks, int compression, double dots_per_inch,
-                  Failure& failure) {
+bool write_stream(std::FILE* file, const Image& image, std::vector<png_text>& chunks, int compression,
+                  double dots_per_inch, Failure& failure) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, on_error, on_warning);
   if (!png) return false;
   png_infop info = png_create_info_struct(png);
@@ -194,10 +193,13 @@ struct Declared {
     if (srgb) return {};
     return gamma + (gamma.empty() || primaries.empty() ? "" : ", ") + primaries;
   }
-  std::string animation() const { return frames == 0 ? std::string() : fmt::format("{} frames ({:016x})", frames, sum); }
+  std::string animation() const {
+    return frames == 0 ? std::string() : fmt::format("{} frames ({:016x})", frames, sum);
+  }
 };
 
-void note_chunk(Declared& declared, std::string_view type, const unsigned char* data, std::size_t size, std::uint32_t check) {
+void note_chunk(Declared& declared, std::string_view type, const unsigned char* data, std::size_t size,
+                std::uint32_t check) {
   if (type == "sRGB") declared.srgb = true;
   if (type == "cICP" && size == 4) declared.cicp = fmt::format("{}/{}/{}/{}", data[0], data[1], data[2], data[3]);
   if (type == "iCCP") {
@@ -225,10 +227,10 @@ void note_chunk(Declared& declared, std::string_view type, const unsigned char* 
   if (type == "acTL" && size == 8) declared.frames = word_at(data);
   if (type == "acTL" || type == "fcTL" || type == "fdAT") {
     add_to_sum(declared.sum, reinterpret_cast<const unsigned char*>(type.data()), type.size());
-    const unsigned char tail[8] = {
-        static_cast<unsigned char>(size >> 24), static_cast<unsigned char>(size >> 16), static_cast<unsigned char>(size >> 8),
-        static_cast<unsigned char>(size), static_cast<unsigned char>(check >> 24), static_cast<unsigned char>(check >> 16),
-        static_cast<unsigned char>(check >> 8), static_cast<unsigned char>(check)};
+    const unsigned char tail[8] = {static_cast<unsigned char>(size >> 24),  static_cast<unsigned char>(size >> 16),
+                                   static_cast<unsigned char>(size >> 8),   static_cast<unsigned char>(size),
+                                   static_cast<unsigned char>(check >> 24), static_cast<unsigned char>(check >> 16),
+                                   static_cast<unsigned char>(check >> 8),  static_cast<unsigned char>(check)};
     add_to_sum(declared.sum, tail, sizeof tail);
   }
 }
@@ -244,7 +246,8 @@ Declared read_declared(std::FILE* file) {
     if (length > 0x7fffffffU) break;
     const std::size_t looked_at = std::min<std::size_t>(length, most);
     if (std::fread(data, 1, looked_at, file) != looked_at) break;
-    if (std::fseek(file, at + 8 + static_cast<long>(length), SEEK_SET) != 0 || std::fread(check, 1, 4, file) != 4) break;
+    if (std::fseek(file, at + 8 + static_cast<long>(length), SEEK_SET) != 0 || std::fread(check, 1, 4, file) != 4)
+      break;
     const std::string_view type(reinterpret_cast<const char*>(head) + 4, 4);
     if (type == "IEND") break;
     note_chunk(declared, type, data, length > most && type != "iCCP" ? length : looked_at, word_at(check));
@@ -308,7 +311,8 @@ PngFile read_png(std::FILE* file, const std::filesystem::path& path, const std::
   std::vector<std::uint8_t> wide(r.sixteen_bits ? 2 * samples : 0);  // upper byte first
   std::vector<png_bytep> rows;
   for (int y = 0; y < result.image.height; ++y)
-    rows.push_back(r.sixteen_bits ? wide.data() + static_cast<std::size_t>(y) * 2 * (samples / height) : result.image.at(0, y));
+    rows.push_back(r.sixteen_bits ? wide.data() + static_cast<std::size_t>(y) * 2 * (samples / height)
+                                  : result.image.at(0, y));
   constexpr png_uint_32 at_a_time = 128;
   bool whole = true;
   for (int pass = 0; pass < r.passes && whole; ++pass)

@@ -100,7 +100,8 @@ double set_text(cairo_t* cairo, const Font& font, double size, double x, double 
   for (const TextRun& run : text_runs(text)) {
     set_font(cairo, font, run.size() * size);
     cairo_move_to(cairo, pen, y - run.shift() * size);
-    font.use() == Font::Use::glyphs ? cairo_show_text(cairo, run.text.c_str()) : cairo_text_path(cairo, run.text.c_str());
+    font.use() == Font::Use::glyphs ? cairo_show_text(cairo, run.text.c_str())
+                                    : cairo_text_path(cairo, run.text.c_str());
     pen += advance(cairo, run.text);
   }
   return width;
@@ -108,7 +109,8 @@ double set_text(cairo_t* cairo, const Font& font, double size, double x, double 
 
 }  // namespace
 
-double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text, Align align) {
+double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
+                 Align align) {
   if (font.use() == Font::Use::kept) {
     PageText kept{std::string(text), size, x, y, align};
     cairo_get_matrix(cairo, &kept.place);
@@ -165,7 +167,8 @@ std::vector<std::string> number_texts(const std::vector<double>& values) {
   }
   if (largest == 0) return std::vector<std::string>(values.size(), "0");
   if (!(step < largest * 1e5)) step = 1e-5 * largest;  // one value
-  // The fewest digits after the point that keep every number to a hundredth of the step; below 0: zeros before the point.
+  // The fewest digits after the point that keep every number to a hundredth of the step; below 0: zeros before the
+  // point.
   const int least = static_cast<int>(std::floor(-std::log10(step))), most = least + 4;
   int places = least;
   const auto keeps = [&](int n) {
@@ -184,9 +187,12 @@ std::vector<std::string> number_texts(const std::vector<double>& values) {
   for (const double v : values) {
     const std::string sign = v < 0 ? "−" : "";
     const std::string mantissa = fmt::format("{:.{}f}", std::abs(v) / std::pow(10.0, exponent), of_mantissa);
-    if (plain) texts.push_back(sign + fmt::format("{:.{}f}", std::abs(v), after_point));
-    else if (v == 0) texts.emplace_back("0");
-    else texts.push_back(sign + (mantissa == "1" ? "" : mantissa + "·") + power_text(exponent));
+    if (plain)
+      texts.push_back(sign + fmt::format("{:.{}f}", std::abs(v), after_point));
+    else if (v == 0)
+      texts.emplace_back("0");
+    else
+      texts.push_back(sign + (mantissa == "1" ? "" : mantissa + "·") + power_text(exponent));
   }
   return texts;
 }

@@ -73,14 +73,14 @@ void draw_triad(Image& image, const Font& font, const Camera& camera) {
               if (seen < 0.12) {
                 seen_end_on(cairo, origin, turn[axis].z > 0, s.line);
                 draw_text_on_picture(cairo, font, s.text, origin.x - 0.55 * s.text, origin.y + 0.85 * s.text,
-                          names[static_cast<std::size_t>(axis)], Align::right);
+                                     names[static_cast<std::size_t>(axis)], Align::right);
                 continue;
               }
               const glm::dvec2 tip = origin + length * direction;
               const glm::dvec2 name = tip + 0.72 * s.text * direction / seen;
               arrow(cairo, origin, tip, s.line);
-              draw_text_on_picture(cairo, font, s.text, name.x, name.y + 0.30 * s.text, names[static_cast<std::size_t>(axis)],
-                        Align::centre);
+              draw_text_on_picture(cairo, font, s.text, name.x, name.y + 0.30 * s.text,
+                                   names[static_cast<std::size_t>(axis)], Align::centre);
             }
           });
 }
@@ -101,8 +101,9 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profil
     return glm::dvec2(axis + scale * p.y / fastest, image.height * (0.5 - 0.5 * p.x));
   };
   const double top = place(profile.points.back()).y, bottom = place(profile.points.front()).y;
-  draw_on(image, {0, static_cast<int>(top - 2.2 * s.text), static_cast<int>(2.4 * s.margin + 2 * width),
-                  static_cast<int>(bottom - top + 4 * s.text)},
+  draw_on(image,
+          {0, static_cast<int>(top - 2.2 * s.text), static_cast<int>(2.4 * s.margin + 2 * width),
+           static_cast<int>(bottom - top + 4 * s.text)},
           [&](cairo_t* cairo) {
             set_colour(cairo, soft_ink);
             cairo_set_line_width(cairo, 0.6 * s.line);
@@ -132,7 +133,9 @@ void draw_inset(Image& image, const Font& font, const Inset& inset) {
     const glm::dvec2 d = p - inset.centre;
     return middle + scale * glm::dvec2(d.x, -d.y);
   };
-  draw_on(image, {static_cast<int>(left - 4), static_cast<int>(top - 4), static_cast<int>(width + 9), static_cast<int>(height + 9)},
+  draw_on(image,
+          {static_cast<int>(left - 4), static_cast<int>(top - 4), static_cast<int>(width + 9),
+           static_cast<int>(height + 9)},
           [&](cairo_t* cairo) {
             cairo_rectangle(cairo, left, top, width, height);
             set_colour(cairo, white);

@@ -65,8 +65,9 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool 
   const double point = 0.9 * bar.width;  // of the ends
   const double label = bar.top - (legend.above ? point : 0) - 0.8 * s.text;
   const int from = static_cast<int>(0.5 * image.width);
-  draw_on(image, {from, static_cast<int>(label - 1.6 * s.text), image.width - from,
-                  static_cast<int>(bar.height + 2 * point + 5 * s.text)},
+  draw_on(image,
+          {from, static_cast<int>(label - 1.6 * s.text), image.width - from,
+           static_cast<int>(bar.height + 2 * point + 5 * s.text)},
           [&](cairo_t* cairo) {
             // Row by row in whole pixels: the colour of a row is that of its value.
             cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
@@ -117,7 +118,8 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool 
               cairo_move_to(cairo, bar.left + bar.width, y);
               cairo_line_to(cairo, bar.left + bar.width + s.tick, y);
               cairo_stroke(cairo);
-              draw_text_on_picture(cairo, font, s.text, bar.left + bar.width + s.tick + s.gap, y + 0.36 * s.text, texts[k]);
+              draw_text_on_picture(cairo, font, s.text, bar.left + bar.width + s.tick + s.gap, y + 0.36 * s.text,
+                                   texts[k]);
             }
             // centred above the bar as far as the edge of the picture allows
             const double width = text_width(cairo, font, 1.1 * s.text, legend.label);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "render/image/image.h"
-#include "render/scene/frame.h"
 #include "render/image/text.h"
+#include "render/scene/frame.h"
 
 namespace render {
 

@@ -1,11 +1,11 @@
 // One frame as a value: everything that draw_frame() needs.
 #pragma once
 
-#include "render/scene/camera.h"
 #include "render/core/colormap.h"
-#include "render/scene/mesh.h"
 #include "render/core/palette.h"
 #include "render/core/parameters.h"
+#include "render/scene/camera.h"
+#include "render/scene/mesh.h"
 
 #include <optional>
 
@@ -13,8 +13,8 @@ namespace render {
 
 /// The part of a body removed by a plane, for the style "cutaway".
 struct Cut {
-  glm::dvec3 normal{0, -1, 0};  ///< unit vector toward the removed side
-  glm::dvec3 point{0};          ///< of the plane
+  glm::dvec3 normal{0, -1, 0};                 ///< unit vector toward the removed side
+  glm::dvec3 point{0};                         ///< of the plane
   std::vector<std::vector<glm::dvec3>> edges;  ///< closed curves, the first point is not repeated
 };
 
@@ -26,8 +26,8 @@ struct Body {
 
 /// The colour bar of a field, or of a quantity that colours whole bodies.
 struct Legend {
-  std::string label;            ///< as in Captions
-  double low = 0, high = 1;     ///< values at the ends of the map
+  std::string label;         ///< as in Captions
+  double low = 0, high = 1;  ///< values at the ends of the map
   ColourTable colours{};
   bool below = false, above = false;  ///< values beyond that end occur; they have its colour
   /// A field whose map is symmetric in lightness about its middle: view.sign_dots marks the lower half.
@@ -40,7 +40,7 @@ struct FlowArrows {
   sim::Matrix points;      ///< count x 3
   sim::Matrix velocities;  ///< count x 3
   double reference_speed =
-      0;  ///< drawn at full length; 0: the fastest of `velocities`. One value per movie keeps arrows steady.
+      0;             ///< drawn at full length; 0: the fastest of `velocities`. One value per movie keeps arrows steady.
   double shown = 1;  ///< 0: faded into the ground
 };
 

@@ -41,10 +41,10 @@ class MeshPlan {
 struct Mesh {
   std::shared_ptr<const MeshPlan> plan;
   std::vector<glm::dvec3> position;  ///< in the scene
-  std::vector<glm::vec3> normal;  ///< outward unit vectors
-  std::vector<glm::vec3> label;   ///< material label, unit vectors
-  std::vector<double> scalar;     ///< for fields
-  double area_radius = 0;         ///< of the sphere of the same area
+  std::vector<glm::vec3> normal;     ///< outward unit vectors
+  std::vector<glm::vec3> label;      ///< material label, unit vectors
+  std::vector<double> scalar;        ///< for fields
+  double area_radius = 0;            ///< of the sphere of the same area
   struct Tracer {
     glm::dvec3 position;
     glm::vec3 normal;

@@ -31,7 +31,7 @@ Matrix net_directions(const MeshPlan& plan) {
 
 struct Net {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  ///< that cross the plane; first end is below it
-  std::vector<std::array<int, 2>> next;                        ///< the two crossing edges that share a triangle with each
+  std::vector<std::array<int, 2>> next;  ///< the two crossing edges that share a triangle with each
 };
 
 Net crossing_edges(const MeshPlan& plan, const sim::Vector& height) {
@@ -104,7 +104,8 @@ Matrix zeros_on_edges(const sim::Coefficients& position, const CutPlane& plane, 
   sim::Vector t(count), side = sim::Vector::Zero(count);
   for (int round = 0; round < 40; ++round) {
     for (Eigen::Index i = 0; i < count; ++i) t[i] = (a[i] * fb[i] - b[i] * fa[i]) / (fb[i] - fa[i]);
-    const sim::Vector f = (sim::sample_points(position, points_at(t)).rowwise() - plane.origin.transpose()) * plane.normal;
+    const sim::Vector f =
+        (sim::sample_points(position, points_at(t)).rowwise() - plane.origin.transpose()) * plane.normal;
     if (f.cwiseAbs().maxCoeff() <= tolerance) break;
     for (Eigen::Index i = 0; i < count; ++i) {
       if (std::abs(f[i]) <= tolerance) {  // done: stays where it is
@@ -205,7 +206,8 @@ double length(const ClosedCurve& curve) {
   for (const CubicPiece& c : cubic_pieces(curve))
     for (Eigen::Index k = 0; k < rule.theta.size(); ++k) {
       const double t = (std::cos(rule.theta[k]) + 1) / 2, u = 1 - t;
-      sum += rule.weight[k] / 2 * 3 * (u * u * (c.p1 - c.p0) + 2 * u * t * (c.p2 - c.p1) + t * t * (c.p3 - c.p2)).norm();
+      sum +=
+          rule.weight[k] / 2 * 3 * (u * u * (c.p1 - c.p0) + 2 * u * t * (c.p2 - c.p1) + t * t * (c.p3 - c.p2)).norm();
     }
   return sum;
 }

@@ -17,8 +17,8 @@ struct CutPlane {
 
 /// A closed curve in the plane, inside on the left. The last point is joined to the first.
 struct ClosedCurve {
-  sim::Matrix points;    ///< count x 2: along right and up, relative to the plane's origin
-  sim::Matrix tangents;  ///< count x 2, unit vectors in the direction of travel
+  sim::Matrix points;      ///< count x 2: along right and up, relative to the plane's origin
+  sim::Matrix tangents;    ///< count x 2, unit vectors in the direction of travel
   sim::Matrix directions;  ///< count x 3: parameters of the points on the unit sphere
 };
 

@@ -41,8 +41,8 @@ VolumeMoments volume_moments(const sim::Coefficients& position) {
   for (Eigen::Index i = 0; i < x.value.rows(); ++i) {
     const sim::Vec3 p = x.value.row(i).transpose() - origin, t = x.t.row(i), f = x.f.row(i);
     const Eigen::Index latitude = i % nodes;  // the rule's weights are for d(cos theta) = sin theta d theta
-    const double flux = p.dot(t.cross(f)) * rule.weight[latitude] / std::sin(rule.theta[latitude]) * 2 * std::numbers::pi /
-                        static_cast<double>(columns);
+    const double flux = p.dot(t.cross(f)) * rule.weight[latitude] / std::sin(rule.theta[latitude]) * 2 *
+                        std::numbers::pi / static_cast<double>(columns);
     m.volume += flux / 3;
     first += flux / 4 * p;
     second += flux / 5 * p * p.transpose();

@@ -1,5 +1,5 @@
-// What may not succeed: a value, or the reason why there is none. For what is expected to happen now and then, such as a time
-// step that is too long; mistakes of the caller and damaged files are exceptions.
+// What may not succeed: a value, or the reason why there is none. For what is expected to happen now and then, such as
+// a time step that is too long; mistakes of the caller and damaged files are exceptions.
 #pragma once
 
 #include <stdexcept>
@@ -36,8 +36,8 @@ class Attempt {
   std::variant<T, Rejection> result_;
 };
 
-/// f(), an Attempt. What has no geometry, a surface that is none or one that crosses another, throws std::domain_error from deep
-/// below: it is rejected.
+/// f(), an Attempt. What has no geometry, a surface that is none or one that crosses another, throws std::domain_error
+/// from deep below: it is rejected.
 template <class F>
 auto within_domain(F&& f) -> decltype(f()) try {
   return f();

@@ -10,7 +10,8 @@ namespace sim {
 std::vector<std::pair<int, int>> near_pairs(std::span<const Box> boxes, double reach) {
   std::vector<std::pair<int, int>> pairs;
   if (boxes.size() < 2) return pairs;
-  // Centres of near boxes are no farther apart than the largest box is wide and the reach is long: neighbouring cells hold them.
+  // Centres of near boxes are no farther apart than the largest box is wide and the reach is long: neighbouring cells
+  // hold them.
   double width = 0;
   Vec3 low = boxes[0].low;
   for (const Box& box : boxes) {

@@ -20,8 +20,10 @@ void* allocate_raw(std::size_t bytes) {
 }
 
 void free_raw(void* p, std::size_t bytes) {
-  if (bytes < large) ::operator delete(p);
-  else ::operator delete(p, std::align_val_t(huge_page));
+  if (bytes < large)
+    ::operator delete(p);
+  else
+    ::operator delete(p, std::align_val_t(huge_page));
 }
 
 }  // namespace sim

@@ -44,12 +44,15 @@ fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.
 void write_all(int file, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t done = ::write(file, bytes.data(), bytes.size());
-    if (done >= 0) bytes.remove_prefix(static_cast<std::size_t>(done));
-    else if (errno != EINTR) fail(errno);
+    if (done >= 0)
+      bytes.remove_prefix(static_cast<std::size_t>(done));
+    else if (errno != EINTR)
+      fail(errno);
   }
 }
 
-/// The name of a file is on the disk when its folder is. Some file systems cannot say so, and some folders may not be read.
+/// The name of a file is on the disk when its folder is. Some file systems cannot say so, and some folders may not be
+/// read.
 void sync_folder(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;
@@ -67,7 +70,7 @@ void clean_once(const fs::path& folder) {
 }
 
 bool has_a_name(int file) {
-  struct stat status{};
+  struct stat status {};
   return ::fstat(file, &status) == 0 && status.st_nlink > 0;
 }
 
@@ -89,7 +92,7 @@ fs::path destination(const fs::path& path) {
 }
 
 bool lock_file(int descriptor) {
-  struct flock whole{};
+  struct flock whole {};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;
   // Of the open file, not of the process; HDF5's own locks, which readers may use, are of another kind.
@@ -102,10 +105,10 @@ void remove_dead_drafts(const fs::path& folder) {
     if (!is_draft_name(entry.path().filename().string())) continue;
     const int file = ::open(entry.path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) continue;
-    struct flock whole{};
+    struct flock whole {};
     whole.l_type = F_WRLCK;
     whole.l_whence = SEEK_SET;
-    struct stat status{};
+    struct stat status {};
     // Without locks it may be alive, so it stays.
     if (::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && ::fcntl(file, F_OFD_SETLK, &whole) == 0)
       ::unlink(entry.path().c_str());
@@ -165,7 +168,7 @@ int Draft::release() { return std::exchange(file_, -1); }
 void write_file(const fs::path& path, std::string_view bytes) {
   try {
     const fs::path target = destination(path);
-    struct stat status{};
+    struct stat status {};
     if (::stat(target.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
       const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
       if (file < 0) fail(errno);

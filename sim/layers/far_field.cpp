@@ -1,7 +1,7 @@
 #include "sim/layers/far_field.h"
 
-#include "sim/layers/kernels.h"
 #include "sim/core/parallel.h"
+#include "sim/layers/kernels.h"
 #include "sim/layers/small_product.h"
 
 #include <algorithm>
@@ -55,9 +55,11 @@ void exclude(FarField& far, std::vector<Exclusion> exclusions) {
 void add_direct_sum(const Sources& s, const SourceDensities& density, const Matrix& points, Matrix& velocity) {
   const Eigen::Index count = points.rows(), sources = s.points.rows();
   const bool dual = density.dual.size() > 0;
-  // Weighted densities once; four targets a lane, sources in order: the result does not depend on how targets are split.
+  // Weighted densities once; four targets a lane, sources in order: the result does not depend on how targets are
+  // split.
   Matrix f(3, sources), u, n, y = s.points.transpose();
-  for (int d = 0; d < 3; ++d) f.row(d) = (stokeslet_factor * density.force.col(d).array() * s.area.array()).matrix().transpose();
+  for (int d = 0; d < 3; ++d)
+    f.row(d) = (stokeslet_factor * density.force.col(d).array() * s.area.array()).matrix().transpose();
   if (dual) {
     u = density.dual.transpose();
     n = s.normals.transpose() * stresslet_factor;

@@ -1,13 +1,13 @@
 // The smooth rule: single and double layers of many surfaces at many targets, all with all. Everything else about
 // interactions is a correction to it, so that a fast method can take its place.
 //
-// Targets come in groups: the grid of a surface, which does not see that surface (its own layers are singular there), or any
-// points. A target for which the smooth rule of some surface is not good enough is excluded from it: whoever excludes it adds
-// a better value. The direct sum leaves these pairs out; a fast method has to subtract them.
+// Targets come in groups: the grid of a surface, which does not see that surface (its own layers are singular there),
+// or any points. A target for which the smooth rule of some surface is not good enough is excluded from it: whoever
+// excludes it adds a better value. The direct sum leaves these pairs out; a fast method has to subtract them.
 #pragma once
 
-#include "sim/sphere/basis.h"
 #include "sim/core/cells.h"
+#include "sim/sphere/basis.h"
 
 #include <memory>
 #include <span>
@@ -16,9 +16,9 @@ namespace sim {
 
 /// A surface as the smooth rule sees it.
 struct Sources {
-  Matrix points, normals;   ///< points x 3; normals weighted by dA
-  Vector area;              ///< dA
-  Vector spacing;           ///< local distance of neighbouring source points
+  Matrix points, normals;  ///< points x 3; normals weighted by dA
+  Vector area;             ///< dA
+  Vector spacing;          ///< local distance of neighbouring source points
   Box box;
 };
 Sources make_sources(const Basis&, const Coefficients& position);
@@ -28,14 +28,15 @@ int smooth_order(int p, int wanted = 0);
 /// Index of the source point nearest to x, and its distance.
 std::pair<Eigen::Index, double> nearest_source(const Sources&, const Vec3& x);
 
-/// Densities at the points of one surface: force for the single layer; for the double layer, or empty where there is none.
+/// Densities at the points of one surface: force for the single layer; for the double layer, or empty where there is
+/// none.
 struct SourceDensities {
   Matrix force, dual;
 };
 
 struct TargetGroup {
-  Matrix points;      ///< points x 3
-  int surface = -1;   ///< whose grid they are; -1: of none
+  Matrix points;     ///< points x 3
+  int surface = -1;  ///< whose grid they are; -1: of none
 };
 
 /// The targets of a group that do not see a surface by the smooth rule, in ascending order.

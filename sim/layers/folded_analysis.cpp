@@ -56,8 +56,8 @@ void legendre_analysis(const FoldedGrid& g, const SpectrumRows& r, const Lane* s
         rows.clear();
         for (int n = m + parity; n <= g.p; n += 2) rows.push_back(coefficient_index(n, sign * m) * components);
         if (rows.empty()) continue;
-        const SmallProduct product{int(rows.size()), g.half, g.legendre[parity][m].data(), g.half, r.consecutive.data(),
-                                   rows.data()};
+        const SmallProduct product{int(rows.size()),     g.half,     g.legendre[parity][m].data(), g.half,
+                                   r.consecutive.data(), rows.data()};
         multiply(product, width,
                  spectrum + std::ptrdiff_t(parity * r.count + r.first[b] + int(k)) * g.half * components, out);
       }

@@ -32,7 +32,8 @@ FoldedGrid::FoldedGrid(int degree, int grid_order)
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t l = 0; l < columns; ++l) {
         const int m = block.m[r];
-        const double angle = 2 * pi * double(m) * double(l) / nlon, k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
+        const double angle = 2 * pi * double(m) * double(l) / nlon,
+                     k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
         block.table[r * columns + l] = block.transposed[l * rows + r] = k * (b < 2 ? std::cos(angle) : std::sin(angle));
       }
   }

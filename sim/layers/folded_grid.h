@@ -8,8 +8,8 @@
 
 namespace sim {
 
-/// Longitudes of a grid of nlon points fall into orbits {f, -f, pi-f, pi+f} of a quarter; cosines and sines of even and odd
-/// m are even or odd under the two mirrors, which leaves four products of a quarter of the size.
+/// Longitudes of a grid of nlon points fall into orbits {f, -f, pi-f, pi+f} of a quarter; cosines and sines of even and
+/// odd m are even or odd under the two mirrors, which leaves four products of a quarter of the size.
 struct Quarter {
   int index[4];  ///< of f, -f, pi - f, pi + f; -1 where the orbit has no separate such member
 };
@@ -18,15 +18,15 @@ struct Quarter {
 struct FoldedGrid {
   int p, nlat, nlon, half;  ///< half: latitudes of the northern half, the equator included
   std::vector<Quarter> orbits;
-  struct Block {               ///< one of cos/sin x even/odd m
+  struct Block {  ///< one of cos/sin x even/odd m
     std::vector<int> m;
     std::vector<double> table;       ///< m x orbits: basis function at the orbit's first longitude
     std::vector<double> transposed;  ///< orbits x m
   };
-  std::array<Block, 4> blocks;         ///< cos even, cos odd, sin even, sin odd
-  std::vector<std::vector<double>> legendre[2];  ///< [parity of n-m][m]: (n) x half, values, without weights
-  std::vector<std::vector<double>> synthesis[2]; ///< [parity][m]: (2 half) x (n): values, then derivatives
-  Vector theta, weight;                ///< of all latitudes; Gauss-Legendre
+  std::array<Block, 4> blocks;                    ///< cos even, cos odd, sin even, sin odd
+  std::vector<std::vector<double>> legendre[2];   ///< [parity of n-m][m]: (n) x half, values, without weights
+  std::vector<std::vector<double>> synthesis[2];  ///< [parity][m]: (2 half) x (n): values, then derivatives
+  Vector theta, weight;                           ///< of all latitudes; Gauss-Legendre
 
   FoldedGrid(int degree, int grid_order);
   int mirror(int i) const { return nlat - 1 - i; }

@@ -1,5 +1,6 @@
-// The two kernels of Stokes flow, once: for single points (T = double), four targets at a time (T = Lane) and whole arrays.
-// With r = x - y from the source to the target, viscosity 1 and the sign of the double layer as in (5), corrected:
+// The two kernels of Stokes flow, once: for single points (T = double), four targets at a time (T = Lane) and whole
+// arrays. With r = x - y from the source to the target, viscosity 1 and the sign of the double layer as in (5),
+// corrected:
 //   G_ij(r) = (delta_ij / |r| + r_i r_j / |r|^3) / 8 pi          the Stokeslet, Eq. (4)
 //   T_ij(r) = 3/(4 pi) (r.n) r_i r_j / |r|^5                     the stresslet on a surface with the normal n, Eq. (5)
 // Both are of the form  even delta_ij + outer r_i r_j.

@@ -7,8 +7,13 @@
 namespace sim {
 
 LayerPotentials::Plan::Plan(int order, int source_order)
-    : p(order), q(order + 1), s(source_order > 0 ? source_order : order + 1), target(order, order + 1),
-      source(order, source_order > 0 ? source_order : order + 1), target_rows(target), source_rows(source) {
+    : p(order),
+      q(order + 1),
+      s(source_order > 0 ? source_order : order + 1),
+      target(order, order + 1),
+      source(order, source_order > 0 ? source_order : order + 1),
+      target_rows(target),
+      source_rows(source) {
   if (s < p) throw std::invalid_argument("LayerPotentials: the source order must be at least p");
   for (int k = 0; k <= s; ++k) {
     const double t = source.theta[k], z = std::cos(t);
@@ -37,7 +42,8 @@ LayerPotentials::Plan::Plan(int order, int source_order)
   const Matrix projection = basis_functions(p, direction).transpose() * basis.weights().asDiagonal();
   for (int i = 0; i <= q; ++i) {
     const double c = std::cos(target.theta[i]), sn = std::sin(target.theta[i]);
-    turned << c * direction.col(0) + sn * direction.col(2), direction.col(1), c * direction.col(2) - sn * direction.col(0);
+    turned << c * direction.col(0) + sn * direction.col(2), direction.col(1),
+        c * direction.col(2) - sn * direction.col(0);
     const Matrix values = basis_functions(p, turned);
     std::vector<Rotation> all;
     for (int n = 0; n <= p; ++n) {
@@ -48,9 +54,7 @@ LayerPotentials::Plan::Plan(int order, int source_order)
       for (int a = 0; a <= n; ++a)
         for (int b = 0; b <= n; ++b) {
           r.cosine[a * (n + 1) + b] = r.cosine_t[b * (n + 1) + a] = w(n + a, n + b);
-          if (a > 0 && b > 0)
-            r.sine[(a - 1) * n + b - 1] = r.sine_t[(b - 1) * n + a - 1] =
-                w(n - a, n - b);
+          if (a > 0 && b > 0) r.sine[(a - 1) * n + b - 1] = r.sine_t[(b - 1) * n + a - 1] = w(n - a, n - b);
         }
       all.push_back(std::move(r));
     }

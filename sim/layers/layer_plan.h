@@ -1,5 +1,5 @@
-// What the assembly of a layer matrix knows beforehand, and its two halves: rows of the collocation operator, tile by tile, and
-// their projection on the harmonics of the target. Internal to layer_potentials.
+// What the assembly of a layer matrix knows beforehand, and its two halves: rows of the collocation operator, tile by
+// tile, and their projection on the harmonics of the target. Internal to layer_potentials.
 #pragma once
 
 #include "sim/layers/folded_analysis.h"
@@ -17,9 +17,9 @@ struct LayerPotentials::Plan {
   struct Rotation {                     ///< the two mirror classes of one degree n, row-major, forward and transposed
     std::vector<double> cosine, sine, cosine_t, sine_t;
   };
-  std::vector<std::vector<Rotation>> rotations;  ///< [target latitude][n]
+  std::vector<std::vector<Rotation>> rotations;       ///< [target latitude][n]
   std::vector<int> identity3, identity9, identity12;  ///< 0, 3, 6, ...; 0, 9, 18, ...; 0, 12, 24, ...
-  std::vector<int> down3, down12;                ///< 0, -3, -6, ... and 0, -12, -24, ...
+  std::vector<int> down3, down12;                     ///< 0, -3, -6, ... and 0, -12, -24, ...
 
   Plan(int order, int source_order);
   struct Turn;

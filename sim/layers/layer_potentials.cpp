@@ -72,7 +72,8 @@ LayerMatrices LayerPotentials::Plan::project(const RawVector<double>& rows, bool
         for (int c = 0; c < width; ++c) {
           const int column = (first + c) * lanes;
           LayerMatrix& m = column < 6 * stride ? result.single : result.dual;
-          double* to = m.values.data() + std::ptrdiff_t(row) * 6 * stride + column - (&m == &result.dual ? 6 * stride : 0);
+          double* to =
+              m.values.data() + std::ptrdiff_t(row) * 6 * stride + column - (&m == &result.dual ? 6 * stride : 0);
           __builtin_memcpy(to, &out.get()[row * components + c], sizeof(Lane));
         }
     }

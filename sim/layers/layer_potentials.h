@@ -9,8 +9,8 @@
 // factor (1 - lambda).
 #pragma once
 
-#include "sim/sphere/basis.h"
 #include "sim/core/raw_memory.h"
+#include "sim/sphere/basis.h"
 
 #include <memory>
 
@@ -18,9 +18,9 @@ namespace sim {
 
 /// The six distinct blocks xx, xy, xz, yy, yz, zz of a symmetric tensor kernel: each row-major (p+1)^2 x stride.
 struct LayerMatrix {
-  int order = -1;                      ///< p; -1: not assembled
-  int stride = 0;                      ///< doubles from one row of a block to the next
-  RawVector<double> values;            ///< [row][block][column], blocks padded to `stride` columns
+  int order = -1;                                         ///< p; -1: not assembled
+  int stride = 0;                                         ///< doubles from one row of a block to the next
+  RawVector<double> values;                               ///< [row][block][column], blocks padded to `stride` columns
   Coefficients apply(const Coefficients& density) const;  ///< 3 fields in, 3 fields out
 };
 

@@ -79,7 +79,8 @@ LaneBuffer LayerPotentials::Plan::to_pole(int latitude, const Turn& turn, const 
     multiply({n + 1, n + 1, w.cosine.data(), n + 1, identity3.data(), identity3.data()}, 3, turned.get() + centre,
              pole.get() + centre);
     if (n > 0)
-      multiply({n, n, w.sine.data(), n, down3.data(), down3.data()}, 3, turned.get() + centre - 3, pole.get() + centre - 3);
+      multiply({n, n, w.sine.data(), n, down3.data(), down3.data()}, 3, turned.get() + centre - 3,
+               pole.get() + centre - 3);
   }
   return pole;
 }
@@ -99,7 +100,8 @@ LaneBuffer LayerPotentials::Plan::along_latitudes(const LaneBuffer& pole) const 
           continue;
         }
         for (int c = 0; c < count; ++c) in[c] = 3 * coefficient_index(m + parity + 2 * c, sign * m);
-        multiply({2 * half, count, source.synthesis[parity][m].data(), count, in.data(), identity3.data()}, 3, pole.get(), out);
+        multiply({2 * half, count, source.synthesis[parity][m].data(), count, in.data(), identity3.data()}, 3,
+                 pole.get(), out);
       }
   return x_lat;
 }
@@ -111,8 +113,8 @@ struct LayerPotentials::Plan::Scratch {
   std::vector<Lane> samples;
 };
 
-/// Fourier synthesis at source latitude i (lat = 0) or its mirror (1): x, x_theta and x_phi of four blocks at a quarter of the
-/// longitudes.
+/// Fourier synthesis at source latitude i (lat = 0) or its mirror (1): x, x_theta and x_phi of four blocks at a quarter
+/// of the longitudes.
 void LayerPotentials::Plan::quarter_of(const LaneBuffer& x_lat, int i, int lat, Scratch& scratch) const {
   const int half = source.half, spectra = source_rows.count, orbits = int(source.orbits.size());
   const double lat_sign = lat == 0 ? 1 : -1;
@@ -142,7 +144,8 @@ void LayerPotentials::Plan::quarter_of(const LaneBuffer& x_lat, int i, int lat, 
       std::fill(out, out + orbits * 9, Lane{});
       continue;
     }
-    multiply({orbits, count, source.blocks[b].transposed.data(), count, identity9.data(), identity9.data()}, 9, modes, out);
+    multiply({orbits, count, source.blocks[b].transposed.data(), count, identity9.data(), identity9.data()}, 9, modes,
+             out);
   }
 }
 
@@ -237,8 +240,8 @@ void LayerPotentials::Plan::rows_of_tile(int latitude, int tile, const Coefficie
 
   LaneBuffer spectrum(std::size_t(2) * source_rows.count * half * components);
   Scratch scratch{LaneBuffer(std::size_t(p / 2 + 1) * 9), LaneBuffer(std::size_t(4) * orbits * 9),
-                  LaneBuffer(std::size_t(8) * orbits * components), std::vector<SourcePoint>(std::size_t(2) * orbits * 4),
-                  std::vector<Lane>(8 * components)};
+                  LaneBuffer(std::size_t(8) * orbits * components),
+                  std::vector<SourcePoint>(std::size_t(2) * orbits * 4), std::vector<Lane>(8 * components)};
   for (int i = 0; i < half; ++i) {
     const int members = source.mirror(i) == i ? 1 : 2;
     for (int lat = 0; lat < members; ++lat) {

@@ -72,8 +72,8 @@ namespace {
 struct GradedGrid {
   int p;
   double theta0, phi0;
-  LegendreTable table;  ///< of the graded colatitudes
-  Matrix fourier;       ///< (2p+1) x nf
+  LegendreTable table;                   ///< of the graded colatitudes
+  Matrix fourier;                        ///< (2p+1) x nf
   Eigen::ArrayXXd r[3], n[3], rr, area;  ///< target - y, weighted normal, |r|^2, dA
 };
 
@@ -94,7 +94,8 @@ GradedGrid graded_grid(const RotationPlan& plan, const Coefficients& x, const Ve
                        NearOrder order) {
   const int p = plan.order(), nt = order.latitudes, nf = order.longitudes, width = 2 * p + 1;
   const Vec3& s = nearest.parameter;
-  GradedGrid g{p, std::atan2(std::hypot(s[0], s[1]), s[2]), std::atan2(s[1], s[0]), {}, Matrix(width, nf), {}, {}, {}, {}};
+  GradedGrid g{p, std::atan2(std::hypot(s[0], s[1]), s[2]), std::atan2(s[1], s[0]), {}, Matrix(width, nf), {}, {}, {},
+               {}};
   const Matrix turned = plan.to_pole(resized(x, p).values, g.theta0, g.phi0);
 
   // Graded colatitudes. The metric at the pole is that of the longer tangent: the narrower width in the parameter.

@@ -19,13 +19,14 @@ struct NearestPoint {
   Vec3 parameter = Vec3::UnitZ();  ///< on the unit sphere
   Vec3 position = Vec3::Zero();
   double distance = 0;
-  bool inside = false;             ///< the target lies on the inner side of the membrane
+  bool inside = false;  ///< the target lies on the inner side of the membrane
 };
 
 /// Newton's method for the nearest point of x(s) to the target, started at the parameter `start`.
 NearestPoint nearest_point(const Coefficients& position, const Vec3& target, const Vec3& start);
 
-/// Rows of (4) with mu = 1 and of (5) without (1 - lambda) for one target: (p+1)^2 x 6 each, blocks xx, xy, xz, yy, yz, zz.
+/// Rows of (4) with mu = 1 and of (5) without (1 - lambda) for one target: (p+1)^2 x 6 each, blocks xx, xy, xz, yy, yz,
+/// zz.
 struct PointRow {
   Matrix single, dual;  ///< dual: empty unless asked for
 };
@@ -34,8 +35,8 @@ PointRow near_row(const RotationPlan&, const Coefficients& position, const Vec3&
 
 /// The same applied directly to densities of degree <= p, for a point that is evaluated once: S force + D dual
 /// (nullptr: none).
-Vec3 near_velocity(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder,
-                   const Coefficients& force, const Coefficients* dual);
+Vec3 near_velocity(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&,
+                   NearOrder, const Coefficients& force, const Coefficients* dual);
 
 /// Velocity of a row: sum over the tensor blocks.
 Vec3 apply_row(const Matrix& row, const Matrix& density);

@@ -12,7 +12,8 @@
 
 namespace sim {
 
-/// Safe for concurrent use: the thread that asks first builds a plan, and only those who ask for that very plan wait for it.
+/// Safe for concurrent use: the thread that asks first builds a plan, and only those who ask for that very plan wait
+/// for it.
 class Plans {
  public:
   const Basis& basis(int order, int grid_order) { return get(bases_, std::pair(order, grid_order), order, grid_order); }
@@ -21,8 +22,8 @@ class Plans {
   }
   const RotationPlan& rotation(int order) { return get(rotations_, order, order); }
 
-  /// Between two steps, while nobody holds a reference: drops what has not been asked for in the last `rounds` calls, so that a
-  /// run whose orders change keeps no more than it needs.
+  /// Between two steps, while nobody holds a reference: drops what has not been asked for in the last `rounds` calls,
+  /// so that a run whose orders change keeps no more than it needs.
   void forget_unused(int rounds = 100);
   std::size_t size() const;  ///< number of plans
 

@@ -17,7 +17,8 @@ inline Lane lane_sqrt(Lane v) {
   return r;
 }
 
-/// Rows of B and C start at b + b_row[k] and c + c_row[m] (in vectors); A is rows x depth, row-major, leading dimension a_ld.
+/// Rows of B and C start at b + b_row[k] and c + c_row[m] (in vectors); A is rows x depth, row-major, leading dimension
+/// a_ld.
 struct SmallProduct {
   int rows, depth;
   const double* a;
@@ -54,10 +55,17 @@ inline void multiply(const SmallProduct& s, int width, const Lane* b, Lane* c) {
     int row = 0;
     for (; row + 4 <= s.rows; row += 4) product_rows<4>(s, row, b + w, c + w);
     switch (s.rows - row) {
-      case 3: product_rows<3>(s, row, b + w, c + w); break;
-      case 2: product_rows<2>(s, row, b + w, c + w); break;
-      case 1: product_rows<1>(s, row, b + w, c + w); break;
-      default: break;
+      case 3:
+        product_rows<3>(s, row, b + w, c + w);
+        break;
+      case 2:
+        product_rows<2>(s, row, b + w, c + w);
+        break;
+      case 1:
+        product_rows<1>(s, row, b + w, c + w);
+        break;
+      default:
+        break;
     }
   }
 }

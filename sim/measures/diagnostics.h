@@ -8,11 +8,11 @@ namespace sim {
 /// One vesicle of one saved state. Lengths in scene units; E/(8 pi kappa) with Helfrich's kappa = kappa_b/2.
 struct VesicleMeasures {
   double area = 0, volume = 0, area_error = 0, volume_error = 0, reduced_volume = 0;
-  Vec3 center = Vec3::Zero();          ///< volume centroid c
-  double inclination_deg = 0;          ///< atan2(2 M_xz, M_xx - M_zz)/2 in (-90, 90]
-  Vec3 axes = Vec3::Zero();            ///< sqrt(5 m_i/V), m_i the eigenvalues of M = int (x-c)(x-c)^T dV, largest first
-  double energy = 0;                   ///< E/(8 pi kappa), 1 for a sphere
-  double velocity_l2 = 0, normal_velocity_l2 = 0;  ///< sqrt(int |u|^2 dA), sqrt(int (u.n)^2 dA)
+  Vec3 center = Vec3::Zero();  ///< volume centroid c
+  double inclination_deg = 0;  ///< atan2(2 M_xz, M_xx - M_zz)/2 in (-90, 90]
+  Vec3 axes = Vec3::Zero();    ///< sqrt(5 m_i/V), m_i the eigenvalues of M = int (x-c)(x-c)^T dV, largest first
+  double energy = 0;           ///< E/(8 pi kappa), 1 for a sphere
+  double velocity_l2 = 0, normal_velocity_l2 = 0;             ///< sqrt(int |u|^2 dA), sqrt(int (u.n)^2 dA)
   double tension_mean = 0, tension_min = 0, tension_max = 0;  ///< mean over the area; extremes on the grid
 };
 

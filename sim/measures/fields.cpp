@@ -1,7 +1,7 @@
 #include "sim/measures/fields.h"
 
-#include "sim/membrane/forces.h"
 #include "sim/core/parallel.h"
+#include "sim/membrane/forces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +85,8 @@ Net net_of(const Coefficients& position) {
       Net::Patch& patch = net.patches.emplace_back(Net::Patch{Vec3::Zero(), 0, {}});
       for (Eigen::Index b = j; b < j + side; ++b)
         for (Eigen::Index a = i; a < i + side; ++a) patch.points.push_back(a + b * latitudes);
-      for (const Eigen::Index k : patch.points) patch.centre += net.points.row(k).transpose() / static_cast<double>(side * side);
+      for (const Eigen::Index k : patch.points)
+        patch.centre += net.points.row(k).transpose() / static_cast<double>(side * side);
       for (const Eigen::Index k : patch.points)
         patch.reach = std::max(patch.reach, (net.points.row(k).transpose() - patch.centre).norm());
     }
@@ -135,11 +136,12 @@ Vector neighbour_distance(const FieldSite& s) {
       const auto [nearest, rough] = nearest_of(net, here);
       const double height = std::abs(net.normals.row(nearest).dot(here.transpose() - net.points.row(nearest)));
       // Above the tangent plane of a surface that curves like the net's own sphere.
-      const double aside2 = std::max(rough * rough - height * height, 0.0), curved = height + 0.5 * aside2 / (net.reach + height);
-      best = std::min(best, rough > near ? std::min(rough, curved)
-                                         : nearest_point(s.state.vesicles[k].position, here,
-                                                         Vec3(net.parameters.row(nearest)))
-                                               .distance);
+      const double aside2 = std::max(rough * rough - height * height, 0.0),
+                   curved = height + 0.5 * aside2 / (net.reach + height);
+      best = std::min(
+          best, rough > near
+                    ? std::min(rough, curved)
+                    : nearest_point(s.state.vesicles[k].position, here, Vec3(net.parameters.row(nearest))).distance);
     }
     distance[i] = best;
   });
@@ -155,12 +157,13 @@ const std::vector<FieldRow>& field_catalogue() {
        mean_curvature},
       {"gaussian-curvature", "Gaussian curvature, 1 on the sphere of the same area, negative on saddles", "K",
        FieldScale::square_curvature, true, false, gaussian_curvature},
-      {"bending-force", "bending force of the membrane on the fluid per area, along the outward normal",
-       "f_{b}·n", FieldScale::force, true, false, bending},
-      {"tension-force", "magnitude of the tension force of the membrane on the fluid per area",
-       "|f_{σ}|", FieldScale::force, false, false, tension_density},
-      {"normal-velocity", "velocity along the outward normal, relative to the vesicle: how fast the shape changes or turns",
-       "u·n", FieldScale::velocity, true, false, normal_velocity},
+      {"bending-force", "bending force of the membrane on the fluid per area, along the outward normal", "f_{b}·n",
+       FieldScale::force, true, false, bending},
+      {"tension-force", "magnitude of the tension force of the membrane on the fluid per area", "|f_{σ}|",
+       FieldScale::force, false, false, tension_density},
+      {"normal-velocity",
+       "velocity along the outward normal, relative to the vesicle: how fast the shape changes or turns", "u·n",
+       FieldScale::velocity, true, false, normal_velocity},
       {"membrane-speed", "speed along the membrane, relative to the vesicle: tank-treading", "|u_{s}|",
        FieldScale::velocity, false, false, membrane_speed},
       {"neighbour-distance", "distance to the nearest point of any other vesicle", "h", FieldScale::length, false, true,

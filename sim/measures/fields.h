@@ -3,9 +3,9 @@
 // units of the scene; the caller divides by the scales it needs.
 #pragma once
 
-#include "sim/surface/geometry.h"
 #include "sim/layers/near.h"
 #include "sim/layers/plans.h"
+#include "sim/surface/geometry.h"
 
 #include "sim/core/catalogue.h"
 #include "sim/core/parameters.h"
@@ -30,23 +30,23 @@ class Surroundings {
 
 /// One vesicle at one instant, on the grid on which its fields are sampled.
 struct FieldSite {
-  const Basis& basis;       ///< the surface's degree on the grid
-  const Basis& full;        ///< the grid's own degree
+  const Basis& basis;  ///< the surface's degree on the grid
+  const Basis& full;   ///< the grid's own degree
   Geometry geometry;
   const State& state;
-  std::size_t vesicle;      ///< within state
+  std::size_t vesicle;  ///< within state
   double bending_modulus;
   Surroundings& surroundings;
 };
 
 /// The unit by which a field is divided to make it dimensionless.
 enum class FieldScale {
-  length,           ///< R0
-  curvature,        ///< 1/R0
-  square_curvature, ///< 1/R0^2
-  tension,          ///< kappa_b/R0^2
-  force,            ///< kappa_b/R0^3
-  velocity          ///< R0 times the rate of the flow; 1 without a rate
+  length,            ///< R0
+  curvature,         ///< 1/R0
+  square_curvature,  ///< 1/R0^2
+  tension,           ///< kappa_b/R0^2
+  force,             ///< kappa_b/R0^3
+  velocity           ///< R0 times the rate of the flow; 1 without a rate
 };
 
 /// Value at every grid point.
@@ -56,8 +56,8 @@ struct FieldRow {
   std::string_view name, meaning;
   std::string_view symbol;  ///< with _{...} and ^{...} for subscripts and superscripts
   FieldScale scale;
-  bool has_sign;            ///< zero is a distinguished value, to be visible in the colours
-  bool needs_neighbours;    ///< needs at least two vesicles
+  bool has_sign;          ///< zero is a distinguished value, to be visible in the colours
+  bool needs_neighbours;  ///< needs at least two vesicles
   FieldFunction function;
   double automatic_end = std::numeric_limits<double>::infinity();  ///< end of an automatic range, in the unit above
 };

@@ -1,5 +1,5 @@
-// A body as one block of the coupled system (40)-(42): so many unknowns, the densities by which the others feel it, its own
-// rows, and an approximate inverse. A vesicle is one kind of body; the solver knows no other property of it.
+// A body as one block of the coupled system (40)-(42): so many unknowns, the densities by which the others feel it, its
+// own rows, and an approximate inverse. A vesicle is one kind of body; the solver knows no other property of it.
 #pragma once
 
 #include "sim/membrane/gmres.h"
@@ -7,7 +7,8 @@
 
 namespace sim {
 
-/// Densities on one body, degree p: force for the single layer, (1 - lambda) u minus its rigid part for the double layer.
+/// Densities on one body, degree p: force for the single layer, (1 - lambda) u minus its rigid part for the double
+/// layer.
 struct Densities {
   Coefficients force, dual;
 };

@@ -9,20 +9,32 @@ namespace sim {
 const std::vector<CatalogueRow<FlowFunction>>& flow_catalogue() {
   static const std::vector<CatalogueRow<FlowFunction>> table{
       {"none", "fluid at rest", {}, [](const FlowParameters&, const Vec3&) -> Vec3 { return Vec3::Zero(); }},
-      {"shear", "simple shear, u = rate z e_x", {"rate"},
-       [](const FlowParameters& f, const Vec3& x) -> Vec3 { return {f.rate * x[2], 0, 0}; }},
-      {"poiseuille", "parabolic tube flow, u_x = U - a (y^2 + z^2)", {"curvature", "centreline_velocity"},
+      {"shear",
+       "simple shear, u = rate z e_x",
+       {"rate"},
+       [](const FlowParameters& f, const Vec3& x) -> Vec3 {
+         return {f.rate * x[2], 0, 0};
+       }},
+      {"poiseuille",
+       "parabolic tube flow, u_x = U - a (y^2 + z^2)",
+       {"curvature", "centreline_velocity"},
        [](const FlowParameters& f, const Vec3& x) -> Vec3 {
          return {f.centreline_velocity - f.curvature * (x[1] * x[1] + x[2] * x[2]), 0, 0};
        }},
-      {"extension", "straining flow, rate (x, 0, -z) planar or rate (x, -y/2, -z/2) uniaxial", {"rate", "planar"},
+      {"extension",
+       "straining flow, rate (x, 0, -z) planar or rate (x, -y/2, -z/2) uniaxial",
+       {"rate", "planar"},
        [](const FlowParameters& f, const Vec3& x) -> Vec3 {
          if (f.planar) return {f.rate * x[0], 0, -f.rate * x[2]};
          return {f.rate * x[0], -f.rate * x[1] / 2, -f.rate * x[2] / 2};
        }},
-      {"rotation", "rigid rotation, u = omega x r", {"angular_velocity"},
+      {"rotation",
+       "rigid rotation, u = omega x r",
+       {"angular_velocity"},
        [](const FlowParameters& f, const Vec3& x) -> Vec3 { return f.angular_velocity.cross(x); }},
-      {"uniform", "the same velocity everywhere", {"velocity"},
+      {"uniform",
+       "the same velocity everywhere",
+       {"velocity"},
        [](const FlowParameters& f, const Vec3&) -> Vec3 { return f.velocity; }},
   };
   return table;

@@ -1,8 +1,8 @@
 // Membrane forces on the fluid, linear in the new position or tension (33), with the geometry held fixed. With the
 // displacement d = x+ - x of the material points and psi = d.n:
 //   H+ = H + (Laplacian psi + (4 H^2 - 2 K) psi) / 2 + d.grad H                (in place of (33a))
-//   f_b = -kappa_b (Laplacian H+ + 2 H+ (H^2 - K)) n                           (33b); at x+ = x it is the full force (2a)
-//   f_sigma = sigma Laplacian x + grad sigma = 2 H sigma n + grad sigma        (33c), (2b)
+//   f_b = -kappa_b (Laplacian H+ + 2 H+ (H^2 - K)) n                           (33b); at x+ = x it is the full force
+//   (2a) f_sigma = sigma Laplacian x + grad sigma = 2 H sigma n + grad sigma        (33c), (2b)
 // H+ is the first variation of H at a material point. The paper's (33a), E x+_ff - 2F x+_tf + G x+_tt along n, also
 // equals H at x+ = x, but lacks the first derivatives of the Laplacian, which makes it singular at the poles, and the
 // terms without derivatives. f_b is minus the variation of E = kappa_b int H^2 dA, so kappa_b is twice Helfrich's

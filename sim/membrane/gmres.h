@@ -16,11 +16,12 @@ inline double plain_product(const Vector& a, const Vector& b) { return a.dot(b);
 struct GmresResult {
   Vector solution;
   int iterations = 0;
-  double residual = 0;     ///< |b - A x| / |b|, from the recurrence
+  double residual = 0;  ///< |b - A x| / |b|, from the recurrence
   bool converged = false;
 };
 
-/// Solves A x = b from `guess` to |b - A x| <= tolerance |b|, in the norm of the inner product; `inverse` approximates A^-1.
+/// Solves A x = b from `guess` to |b - A x| <= tolerance |b|, in the norm of the inner product; `inverse` approximates
+/// A^-1.
 GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b, const Vector& guess, double tolerance,
                   int most_iterations, const InnerProduct& product = plain_product);
 

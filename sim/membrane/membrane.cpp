@@ -5,7 +5,8 @@ namespace sim {
 Membrane freeze_membrane(Plans& plans, const Material& material, const Coefficients& position, int upsampling,
                          int source_order, const Coefficients& expected_tension, std::optional<PinnedTension> pinned) {
   Sheet sheet = freeze_sheet(plans, material, position, upsampling, expected_tension, pinned);
-  LayerMatrices layers = plans.layers(position.order, source_order).assemble(position, material.viscosity_contrast != 1);
+  LayerMatrices layers =
+      plans.layers(position.order, source_order).assemble(position, material.viscosity_contrast != 1);
   return {std::move(sheet), std::move(layers), surface_waves(plans, position)};
 }
 

@@ -10,12 +10,14 @@ SpectralInverse spectral_inverse(const Membrane& m, double c) {
   SpectralInverse inverse{alpha, {}, {}, {}};
   c = step_of(m, c);
   if (c != 0) {
-    // On a plane a normal traction of wave number k moves it at 1/(4k), and bending answers a ripple with kappa_b k^4/2.
+    // On a plane a normal traction of wave number k moves it at 1/(4k), and bending answers a ripple with kappa_b
+    // k^4/2.
     const auto stiffness = [&](double k) { return c * (kappa * k * k * k / 8 + sigma * k / 4); };
     inverse.normal = mode_filter(m.waves, [&](double k) { return 1 / (alpha + stiffness(k)) - 1 / alpha; });
-    // With less stiffness the edge costs more than the iterations it saves. At a step of c = 0.3 six degrees are also enough where
-    // the normal turns quickly (oblate and biconcave from nu = 0.5); four are not. With c kappa_b = 0.1 and more an oblate of
-    // nu = 0.6 takes up to a sixth more iterations than without an edge, a prolate up to two fifths fewer.
+    // With less stiffness the edge costs more than the iterations it saves. At a step of c = 0.3 six degrees are also
+    // enough where the normal turns quickly (oblate and biconcave from nu = 0.5); four are not. With c kappa_b = 0.1
+    // and more an oblate of nu = 0.6 takes up to a sixth more iterations than without an edge, a prolate up to two
+    // fifths fewer.
     constexpr double stiff = 8;
     constexpr int edge_degrees = 6;
     const int first = m.order() + 2 - edge_degrees;
@@ -23,8 +25,8 @@ SpectralInverse spectral_inverse(const Membrane& m, double c) {
       Matrix whole = truncated_overlap(m.waves, first);
       // On a very long body the fitted Laplacian may give some modes no wave number at all: they count as soft ones.
       const double least = 1e-3 * alpha;
-      const std::vector<Matrix> soft =
-          mode_filter(m.waves, [&](double k) { return alpha / std::max(stiffness(k), least); }, first);
+      const std::vector<Matrix> soft = mode_filter(
+          m.waves, [&](double k) { return alpha / std::max(stiffness(k), least); }, first);
       for (int n = first; n <= m.order() + 1; ++n) {
         const int at = n * n - first * first, size = 2 * n + 1;
         whole.block(at, at, size, size) += soft[n - first];

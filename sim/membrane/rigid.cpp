@@ -50,7 +50,8 @@ RigidMotion shape_motion(const RigidBody& b, const Geometry& g, const Matrix& u)
   Eigen::Matrix<double, 6, 6> left = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
   for (Eigen::Index k = 0; k < g.dA.size(); ++k) {
-    const Vec3 n = g.n.row(k).transpose(), v = u.row(k).transpose(), arm = (g.x.value.row(k).transpose() - b.centre) / size;
+    const Vec3 n = g.n.row(k).transpose(), v = u.row(k).transpose(),
+               arm = (g.x.value.row(k).transpose() - b.centre) / size;
     Eigen::Matrix<double, 3, 6> motions;
     motions << Eigen::Matrix3d::Identity(), -cross_matrix(arm);
     const Eigen::Matrix<double, 1, 6> along = n.transpose() * motions;
@@ -80,7 +81,8 @@ Eigen::Matrix3d turn(const Frame& frame, double time) {
                     : Eigen::AngleAxisd(angle, frame.motion.rotation.normalized()).toRotationMatrix();
 }
 
-/// exp(a), and its mean over the way, the integral of exp(a s) over s from 0 to 1: by their series for a/2^k, doubled k times.
+/// exp(a), and its mean over the way, the integral of exp(a s) over s from 0 to 1: by their series for a/2^k, doubled k
+/// times.
 struct Exponential {
   Eigen::Matrix3d whole, mean;
 };

@@ -17,9 +17,9 @@ struct RigidMotion {
 
 /// Data of a surface for rigid motions, all six of which its degree represents exactly.
 struct RigidBody {
-  Vec3 centre = Vec3::Zero();      ///< mean position over the parameter sphere
-  Coefficients arm;                ///< x - centre
-  Eigen::Matrix3d inverse_inertia; ///< of the coefficients of the arm
+  Vec3 centre = Vec3::Zero();       ///< mean position over the parameter sphere
+  Coefficients arm;                 ///< x - centre
+  Eigen::Matrix3d inverse_inertia;  ///< of the coefficients of the arm
 };
 RigidBody rigid_body(const Coefficients& position);
 

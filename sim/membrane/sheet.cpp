@@ -18,10 +18,19 @@ Sheet freeze_sheet(Plans& plans, const Material& material, const Coefficients& p
     stretched = bases.field.synthesize(resized(expected_tension, p)).values.col(0).cwiseMax(0);
   const double mean_stretched = integrate(g, stretched) / area;
   Matrix gradient = curvature_gradient(bases, g);
-  // Degree p would leave the ripples of degree p + 1, ... without stiffness; with p + 2 and p + 4 runs agree with the full q.
+  // Degree p would leave the ripples of degree p + 1, ... without stiffness; with p + 2 and p + 4 runs agree with the
+  // full q.
   const Basis& ripples = plans.basis(std::min(q, p + 4), q);
-  return {bases, ripples, material, std::move(g), radius, rigid_body(position), std::move(gradient), std::move(stretched),
-          mean_stretched, pinned};
+  return {bases,
+          ripples,
+          material,
+          std::move(g),
+          radius,
+          rigid_body(position),
+          std::move(gradient),
+          std::move(stretched),
+          mean_stretched,
+          pinned};
 }
 
 double step_of(const Sheet& m, double c) { return c == 0 && m.pinned ? m.pinned->time : c; }
@@ -42,9 +51,11 @@ Matrix buoyancy_force(const Sheet& m, const Vec3& gravity) {
 
 namespace {
 
-/// What a displacement (points x 3) adds to the bending force and, by the expected tension, to the tension force; along n.
+/// What a displacement (points x 3) adds to the bending force and, by the expected tension, to the tension force; along
+/// n.
 Vector displacement_magnitude(const Sheet& m, const Vector& bent) {
-  return bending_magnitude(m.ripples, m.geometry, m.material.bending_modulus, bent) + 2 * m.stretched.cwiseProduct(bent);
+  return bending_magnitude(m.ripples, m.geometry, m.material.bending_modulus, bent) +
+         2 * m.stretched.cwiseProduct(bent);
 }
 
 }  // namespace

@@ -1,19 +1,20 @@
-// The membrane as a sheet that resists bending and stretching, at a frozen geometry: what forces it puts on the fluid, without
-// any flow. All that is linear in the unknowns of a step, velocity and tension, and the rest.
+// The membrane as a sheet that resists bending and stretching, at a frozen geometry: what forces it puts on the fluid,
+// without any flow. All that is linear in the unknowns of a step, velocity and tension, and the rest.
 //
-// Two things differ from the paper. The expected tension of the membrane is stiff in the position, as bending is: a ripple of
-// wave number k relaxes at the rate sigma k/4. Where it is positive, 2 sigma (H+ - H) n is added to f_b, with the first
-// variation H+ of forces.h; the terms left out are of second order in the step. Treated explicitly it would limit the step to
-// about 5/(sigma p). And the tension has degree p - 1: its gradient then has degree p, as velocities do. With degree p the
-// gradients of the highest degree would be cut off, and the velocity-tension pair would be nearly singular.
+// Two things differ from the paper. The expected tension of the membrane is stiff in the position, as bending is: a
+// ripple of wave number k relaxes at the rate sigma k/4. Where it is positive, 2 sigma (H+ - H) n is added to f_b, with
+// the first variation H+ of forces.h; the terms left out are of second order in the step. Treated explicitly it would
+// limit the step to about 5/(sigma p). And the tension has degree p - 1: its gradient then has degree p, as velocities
+// do. With degree p the gradients of the highest degree would be cut off, and the velocity-tension pair would be nearly
+// singular.
 //
 // A sphere has no excess area: a constant tension that grows without bound keeps it round, while the linear constraint
-// P u = 0 leaves normal velocities free. Its constant tension is therefore not an unknown but prescribed and large, sigma_p,
-// "pinned": 2 sigma_p (H+ - <H>) n without the pressure -2 sigma_p <H> n, which moves nothing.
+// P u = 0 leaves normal velocities free. Its constant tension is therefore not an unknown but prescribed and large,
+// sigma_p, "pinned": 2 sigma_p (H+ - <H>) n without the pressure -2 sigma_p <H> n, which moves nothing.
 #pragma once
 
-#include "sim/membrane/forces.h"
 #include "sim/layers/plans.h"
+#include "sim/membrane/forces.h"
 #include "sim/membrane/rigid.h"
 
 #include <optional>
@@ -38,12 +39,12 @@ struct Sheet {
   ForceBases bases;
   const Basis& ripples;  ///< degree p + 4 on the upsampled grid: the normal part of a displacement of degree p
   Material material;
-  Geometry geometry;     ///< on the upsampled grid
-  double radius;         ///< area radius
+  Geometry geometry;  ///< on the upsampled grid
+  double radius;      ///< area radius
   RigidBody body;
   Matrix curvature_gradient;
-  Vector stretched;      ///< positive part of the expected tension on the grid
-  double mean_stretched; ///< its mean over the surface
+  Vector stretched;                     ///< positive part of the expected tension on the grid
+  double mean_stretched;                ///< its mean over the surface
   std::optional<PinnedTension> pinned;  ///< of a sphere
   int order() const { return bases.field.order(); }
 };

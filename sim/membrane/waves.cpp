@@ -55,8 +55,7 @@ Matrix truncated_overlap(const SurfaceWaves& w, int first) {
   const Matrix psi = w.basis.synthesize({p + 1, std::move(edge)}).values;
   Matrix overlap = Matrix::Zero(count, count);
   for (int axis = 0; axis < 3; ++axis) {
-    const Matrix kept =
-        w.basis.analyze(Matrix(psi.array().colwise() * w.n.col(axis).array())).values.topRows(nc);
+    const Matrix kept = w.basis.analyze(Matrix(psi.array().colwise() * w.n.col(axis).array())).values.topRows(nc);
     overlap.selfadjointView<Eigen::Lower>().rankUpdate(kept.transpose());
   }
   return overlap.selfadjointView<Eigen::Lower>();

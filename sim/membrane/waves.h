@@ -8,8 +8,8 @@
 // orthonormal modes with their own wave numbers: long waves along a prolate, short ones around it.
 #pragma once
 
-#include "sim/surface/geometry.h"
 #include "sim/layers/plans.h"
+#include "sim/surface/geometry.h"
 
 namespace sim {
 

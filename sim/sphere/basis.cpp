@@ -30,10 +30,10 @@ std::mutex& planner_mutex() {  // FFTW's planner is the one thing in it that is 
 struct Basis::Plan {
   int p = 0, q = 0, nlat = 0, nlon = 0;
   Vector theta, phi, weights, sin_theta;
-  std::vector<Matrix> synthesis;  ///< per m: 3 nlat x (p-m+1), rows P, P', P'' stacked
-  std::vector<Matrix> analysis;   ///< per m: (p-m+1) x nlat, Gauss weights included
-  Matrix fourier[3];              ///< (2p+1) x nlon: basis functions in phi and their two derivatives
-  Matrix fourier_analysis;        ///< nlon x (2p+1)
+  std::vector<Matrix> synthesis;                    ///< per m: 3 nlat x (p-m+1), rows P, P', P'' stacked
+  std::vector<Matrix> analysis;                     ///< per m: (p-m+1) x nlat, Gauss weights included
+  Matrix fourier[3];                                ///< (2p+1) x nlon: basis functions in phi and their two derivatives
+  Matrix fourier_analysis;                          ///< nlon x (2p+1)
   fftw_plan backward = nullptr, forward = nullptr;  ///< one field: nlat transforms of length nlon
 
   Plan(int order, int grid_order);
@@ -46,8 +46,7 @@ struct Basis::Plan {
   Coefficients analyze(const Matrix& samples) const;
 };
 
-Basis::Plan::Plan(int order, int grid_order)
-    : p(order), q(grid_order), nlat(grid_order + 1), nlon(2 * grid_order + 2) {
+Basis::Plan::Plan(int order, int grid_order) : p(order), q(grid_order), nlat(grid_order + 1), nlon(2 * grid_order + 2) {
   if (order < 0 || grid_order < order) throw std::invalid_argument("Basis: the grid order must be at least the degree");
   const GaussLegendre rule = gauss_legendre(nlat);
   theta = rule.theta;

@@ -2,8 +2,8 @@
 // (Eqs. (8)-(15)), first and second derivatives (24), interpolation between grids (23).
 #pragma once
 
-#include "sim/sphere/legendre.h"
 #include "sim/core/types.h"
+#include "sim/sphere/legendre.h"
 
 #include <memory>
 
@@ -33,14 +33,14 @@ class Basis {
   int points() const;      ///< latitudes * longitudes
   const Vector& theta() const;
   const Vector& phi() const;
-  const Vector& weights() const;  ///< quadrature weights of all points over the unit sphere; their sum is 4 pi
+  const Vector& weights() const;    ///< quadrature weights of all points over the unit sphere; their sum is 4 pi
   const Vector& sin_theta() const;  ///< sin(theta) of all points
 
   GridValues synthesize(const Coefficients&) const;
   FirstDerivatives first(const Coefficients&) const;
   SecondDerivatives second(const Coefficients&) const;
-  FirstDerivatives slopes(const Coefficients&) const;        ///< t and f only
-  SecondDerivatives curvatures(const Coefficients&) const;   ///< tt, tf and ff only
+  FirstDerivatives slopes(const Coefficients&) const;       ///< t and f only
+  SecondDerivatives curvatures(const Coefficients&) const;  ///< tt, tf and ff only
   Coefficients analyze(const GridValues&) const;
   Coefficients analyze(const Matrix& samples) const;
 

@@ -8,9 +8,7 @@
 namespace sim {
 
 /// Eq. (18): E_n of all fields together.
-inline double modular_norm(const Coefficients& c, int n) {
-  return c.values.middleRows(n * n, 2 * n + 1).norm();
-}
+inline double modular_norm(const Coefficients& c, int n) { return c.values.middleRows(n * n, 2 * n + 1).norm(); }
 
 /// Eqs. (19), (20): l2 norm of the degrees first..last.
 inline double band_norm(const Coefficients& c, int first, int last) {

@@ -10,7 +10,8 @@ namespace sim {
 
 namespace {
 
-constexpr int most_upsampling = 8;  // that a scene may ask for, and Algorithm 1 chooses: a forged record makes no vast grid
+constexpr int most_upsampling =
+    8;  // that a scene may ask for, and Algorithm 1 chooses: a forged record makes no vast grid
 constexpr double largest_number = 1e150;  // the square of every number is one, too
 
 /// One list of members for both directions.
@@ -31,7 +32,7 @@ void transfer_frame(Archive& ar, F& frame) {
 struct Writer {
   std::vector<double> numbers;
   template <class T>
-    requires std::is_arithmetic_v<T>
+  requires std::is_arithmetic_v<T>
   void operator()(const T& value) { numbers.push_back(double(value)); }  // integers here stay far below 2^53
   void operator()(const Matrix& m) {
     (*this)(m.rows()), (*this)(m.cols());
@@ -41,7 +42,8 @@ struct Writer {
   void operator()(const Frame& frame) { transfer_frame(*this, frame); }
   void operator()(const History& history) {
     (*this)(history.levels.size());
-    for (const PastLevel& level : history.levels) visit_level(level, [this](const char*, const auto& part) { (*this)(part); });
+    for (const PastLevel& level : history.levels)
+      visit_level(level, [this](const char*, const auto& part) { (*this)(part); });
   }
   void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
 };

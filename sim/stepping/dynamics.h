@@ -1,12 +1,13 @@
 // Everything that evolves in a simulation, and its exact form as a list of numbers, from which a run continues bit for
 // bit. A stepper maps Dynamics to Dynamics.
 //
-// The members of a vesicle's state are said once, in visit(): whoever writes, reads, initialises or relabels a state walks it.
+// The members of a vesicle's state are said once, in visit(): whoever writes, reads, initialises or relabels a state
+// walks it.
 #pragma once
 
+#include "sim/membrane/membrane.h"
 #include "sim/stepping/history.h"
 #include "sim/surface/labels.h"
-#include "sim/membrane/membrane.h"
 #include "sim/trajectory/trajectory.h"
 
 #include <span>
@@ -14,10 +15,10 @@
 namespace sim {
 
 struct VesicleDynamics {
-  Coefficients position;        ///< x_n
-  History history;              ///< x_{n-1}, ... as far as the scheme looks back; empty at a start
-  Motion motion;                ///< velocity and tension of the last solve: the next guess
-  Frame frame;                  ///< the motion of its shape at t_n
+  Coefficients position;  ///< x_n
+  History history;        ///< x_{n-1}, ... as far as the scheme looks back; empty at a start
+  Motion motion;          ///< velocity and tension of the last solve: the next guess
+  Frame frame;            ///< the motion of its shape at t_n
   Coefficients labels;
   Matrix tracers;               ///< parameters of the tracer dots
   Coefficients saved_position;  ///< of the last saved state, in the current parametrisation
@@ -26,11 +27,11 @@ struct VesicleDynamics {
   double energy = 0;            ///< E/(8 pi kappa) of x_n
   double tail = 0;              ///< share of the mean curvature's spectrum in its last quarter of degrees
   int upsampling = 2;
-  double upsampling_due = 0;    ///< time of the next run of Algorithm 1
-  double high_share = 0;        ///< high-degree share of x after the last relabelling, the least since
+  double upsampling_due = 0;  ///< time of the next run of Algorithm 1
+  double high_share = 0;      ///< high-degree share of x after the last relabelling, the least since
   std::int64_t relabelled = 0, labels_laid = 0;
   double labels_laid_time = 0;
-  bool warned = false;          ///< the warning that its order does not resolve it was given: once per vesicle and run
+  bool warned = false;  ///< the warning that its order does not resolve it was given: once per vesicle and run
 };
 
 /// What a member is to those who walk the state.
@@ -69,15 +70,16 @@ void visit(Vesicle& v, F&& f) {
   f(Part::number, v.warned);
 }
 
-/// After a relabelling: everything that belongs to the material at the new parameters. `tracers` follow the surface as points.
+/// After a relabelling: everything that belongs to the material at the new parameters. `tracers` follow the surface as
+/// points.
 void carry(Plans&, const Relabelling&, VesicleDynamics&);
 
 struct Dynamics {
-  std::int64_t step = 0;        ///< accepted steps
-  std::int64_t saves = 0;       ///< saved states, the initial one included
+  std::int64_t step = 0;   ///< accepted steps
+  std::int64_t saves = 0;  ///< saved states, the initial one included
   double time = 0;
-  double dt_limit = 0;          ///< longest step at present: halved by a failure, doubled after calm steps
-  std::int64_t calm = 0;        ///< accepted steps since dt_limit changed
+  double dt_limit = 0;    ///< longest step at present: halved by a failure, doubled after calm steps
+  std::int64_t calm = 0;  ///< accepted steps since dt_limit changed
   std::vector<VesicleDynamics> vesicles;
 };
 
@@ -89,8 +91,9 @@ inline constexpr int most_past_levels = 8;
 std::vector<double> serialised(const Dynamics&);
 /// How many numbers serialised() may come to while a scheme looks back over so many levels.
 std::size_t resume_numbers(const Dynamics&, int past_levels);
-/// The inverse; throws std::runtime_error unless the numbers are the whole state of a run that a trajectory of this layout
-/// holds: counts, orders and sizes fit together and within the layout, all numbers are finite, none is left over.
+/// The inverse; throws std::runtime_error unless the numbers are the whole state of a run that a trajectory of this
+/// layout holds: counts, orders and sizes fit together and within the layout, all numbers are finite, none is left
+/// over.
 Dynamics deserialised(std::span<const double>, const TrajectoryLayout&);
 
 }  // namespace sim

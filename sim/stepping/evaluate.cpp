@@ -25,10 +25,11 @@ Attempt<State> evaluate(const Model& s, const Dynamics& d) {
       Motion& motion = result->motions[k];
       if (is_sphere({v.area, v.volume})) {  // only tensions of zero mean are determined
         const Matrix sigma = m.bases.field.synthesize(motion.tension).values;
-        motion.tension.values(0, 0) -= integrate(m.geometry, sigma.col(0)) / m.geometry.dA.sum() * std::sqrt(4 * std::numbers::pi);
+        motion.tension.values(0, 0) -=
+            integrate(m.geometry, sigma.col(0)) / m.geometry.dA.sum() * std::sqrt(4 * std::numbers::pi);
       }
-      VesicleState out{v.position, motion.velocity, motion.tension, v.labels, v.tracers, v.saved_position,
-                       v.saved_velocity, v.relabelled, v.labels_laid, v.labels_laid_time};
+      VesicleState out{v.position,       motion.velocity,  motion.tension, v.labels,      v.tracers,
+                       v.saved_position, v.saved_velocity, v.relabelled,   v.labels_laid, v.labels_laid_time};
       if (d.saves == 0) out.velocity_before = out.velocity;
       state.vesicles.push_back(std::move(out));
     }
@@ -41,7 +42,8 @@ void expect(const Model& s, Dynamics& d, const State& state) {
     VesicleDynamics& v = d.vesicles[k];
     v.motion = {state.vesicles[k].velocity, state.vesicles[k].tension};
     const Basis& basis = s.plans.basis(v.position.order, measure_order(v.position.order));
-    v.frame.motion = shape_motion(rigid_body(v.position), geometry(basis, v.position), basis.synthesize(v.motion.velocity).values);
+    v.frame.motion =
+        shape_motion(rigid_body(v.position), geometry(basis, v.position), basis.synthesize(v.motion.velocity).values);
   }
 }
 

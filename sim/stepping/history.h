@@ -1,11 +1,11 @@
-// The past of a vesicle: its positions at earlier times, as far back as a multistep scheme asks for. Level 0 is that of the
-// step before, with the length of the step that led on from it.
+// The past of a vesicle: its positions at earlier times, as far back as a multistep scheme asks for. Level 0 is that of
+// the step before, with the length of the step that led on from it.
 //
 // Positions belong to the present parametrisation: whoever moves the grid points along the membrane carries them too.
 #pragma once
 
-#include "sim/surface/reparametrize.h"
 #include "sim/membrane/rigid.h"
+#include "sim/surface/reparametrize.h"
 
 #include <vector>
 

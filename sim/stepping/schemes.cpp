@@ -16,7 +16,8 @@ std::vector<int> upsamplings(const Dynamics& d) {
 }
 
 Rejection not_converged(double residual, int iterations) {
-  return {fmt::format("the linear solver stopped at a relative residual of {:.1e} after {} iterations", residual, iterations)};
+  return {fmt::format("the linear solver stopped at a relative residual of {:.1e} after {} iterations", residual,
+                      iterations)};
 }
 
 /// Root of the mean square over the parameter sphere, in area radii of the vesicle.
@@ -35,7 +36,9 @@ std::vector<Coefficients> carried(std::span<const Frame> frames, double time, st
   return x;
 }
 
-Coefficients frame_velocity(const RigidBody& body, const Frame& frame) { return rigid_velocity(body, frame.at(body.centre)); }
+Coefficients frame_velocity(const RigidBody& body, const Frame& frame) {
+  return rigid_velocity(body, frame.at(body.centre));
+}
 
 /// The frame of a shape that moves with a velocity in a flow.
 Frame frame_of(const Membrane& m, const Coefficients& velocity, std::span<const FlowParameters> flows, double time) {
@@ -43,15 +46,16 @@ Frame frame_of(const Membrane& m, const Coefficients& velocity, std::span<const 
   return {shape_motion(m.body, m.geometry, m.bases.field.synthesize(velocity).values), mean_gradient(m.body, flow)};
 }
 
-/// The motions of the present, turned with the frames and put on top of their motion at a later time, at carried positions.
+/// The motions of the present, turned with the frames and put on top of their motion at a later time, at carried
+/// positions.
 std::vector<Motion> carried_motions(const Dynamics& d, const Frames& frames, double time) {
   std::vector<Motion> m = motions(d);
   for (std::size_t k = 0; k < m.size(); ++k) {
     const VesicleDynamics& v = d.vesicles[k];
     const Matrix rest = m[k].velocity.values - frame_velocity(rigid_body(v.position), v.frame).values;
     const RigidBody there = rigid_body(carried(frames.mean[k], time, v.position));
-    m[k].velocity.values = frame_velocity(there, frames.last[k]).values +
-                           turned(frames.mean[k], time, {v.position.order, rest}).values;
+    m[k].velocity.values =
+        frame_velocity(there, frames.last[k]).values + turned(frames.mean[k], time, {v.position.order, rest}).values;
   }
   return m;
 }
@@ -63,8 +67,8 @@ struct Frozen {
   double c, time;                    ///< the flow is taken at this time
 };
 
-/// u+ and x+, where u+ counts as it is or, for positions carried to their frozen place by frames, relative to these. Errors
-/// and histories are the caller's.
+/// u+ and x+, where u+ counts as it is or, for positions carried to their frozen place by frames, relative to these.
+/// Errors and histories are the caller's.
 Attempt<Advance> implicit_step(const StepProblem& problem, const Frozen& frozen, std::span<const Motion> guess,
                                const Frames* moving) {
   const Model& s = problem.model;
@@ -87,7 +91,8 @@ Attempt<Advance> implicit_step(const StepProblem& problem, const Frozen& frozen,
   return a;
 }
 
-/// Half of dt times the change of velocity over the step: dt^2/2 x'' to leading order, the local error of Euler's rules.
+/// Half of dt times the change of velocity over the step: dt^2/2 x'' to leading order, the local error of Euler's
+/// rules.
 double euler_error(const VesicleDynamics& v, const Motion& after, double dt) {
   return size_of(v, dt / 2 * (after.velocity.values - v.motion.velocity.values));
 }
@@ -101,8 +106,8 @@ Attempt<Advance> globally_implicit(const StepProblem& problem) {
   return a;
 }
 
-/// One step of backward Euler extrapolated from two half ones: how BDF2 starts. The frames move steadily. As its error counts
-/// that of the two halves, which is of lower order.
+/// One step of backward Euler extrapolated from two half ones: how BDF2 starts. The frames move steadily. As its error
+/// counts that of the two halves, which is of lower order.
 Attempt<Advance> extrapolated_euler(const StepProblem& problem) {
   const Dynamics& d = problem.before;
   const double dt = problem.dt;
@@ -158,12 +163,14 @@ Attempt<Advance> bdf2(const StepProblem& problem) {
   const std::vector<Motion> guess = carried_motions(d, moving, dt);
   Attempt<Advance> a = implicit_step(problem, frozen, guess, &moving);
   if (!a) return a;
-  // What BDF2 leaves of dt^3 times the third derivative of x. The trapezoidal rule leaves 1/12, so that the two differ by the rest.
+  // What BDF2 leaves of dt^3 times the third derivative of x. The trapezoidal rule leaves 1/12, so that the two differ
+  // by the rest.
   const double share = (1 + r) * (1 + r) / (6 * r * (1 + 2 * r)), rest = share - 1.0 / 12;
   for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
     const VesicleDynamics& v = d.vesicles[k];
     Moved& m = a->vesicles[k];
-    // Velocities relative to the frame, that of x_n turned with it: `guess` stands on top of the frame's motion at the new time.
+    // Velocities relative to the frame, that of x_n turned with it: `guess` stands on top of the frame's motion at the
+    // new time.
     const Matrix start = guess[k].velocity.values - frame_velocity(rigid_body(now[k]), moving.last[k]).values;
     const Matrix end = m.motion.velocity.values - frame_velocity(rigid_body(frozen.at[k]), moving.last[k]).values;
     m.error = share / rest * size_of(v, now[k].values + dt / 2 * (start + end) - m.position.values);
@@ -174,7 +181,8 @@ Attempt<Advance> bdf2(const StepProblem& problem) {
 
 /// The three schemes that solve vesicle by vesicle: what the others do is that of x_n, sigma_n, u_n.
 Attempt<Advance> block_scheme(const StepProblem& problem,
-                              Solve (*solve_self)(const Membrane&, double dt, const Coefficients& r, const Motion&, double)) {
+                              Solve (*solve_self)(const Membrane&, double dt, const Coefficients& r, const Motion&,
+                                                  double)) {
   const Model& s = problem.model;
   const Dynamics& d = problem.before;
   const double dt = problem.dt;
@@ -211,19 +219,19 @@ Attempt<Advance> block_scheme(const StepProblem& problem,
 Attempt<Advance> block_implicit(const StepProblem& problem) { return block_scheme(problem, solve_system); }
 
 Attempt<Advance> block_jacobi(const StepProblem& problem) {
-  return block_scheme(problem, [](const Membrane& m, double c, const Coefficients& r, const Motion& guess, double tolerance) {
-    const Solve tension = solve_tension(m, r, guess, tolerance);
-    if (!tension.converged) return tension;
-    Solve position = solve_position(m, c, r, tension.motion, tolerance);
-    position.iterations += tension.iterations;
-    return position;
-  });
+  return block_scheme(problem,
+                      [](const Membrane& m, double c, const Coefficients& r, const Motion& guess, double tolerance) {
+                        const Solve tension = solve_tension(m, r, guess, tolerance);
+                        if (!tension.converged) return tension;
+                        Solve position = solve_position(m, c, r, tension.motion, tolerance);
+                        position.iterations += tension.iterations;
+                        return position;
+                      });
 }
 
 Attempt<Advance> explicit_position(const StepProblem& problem) {
-  return block_scheme(problem, [](const Membrane& m, double, const Coefficients& r, const Motion& guess, double tolerance) {
-    return solve_tension(m, r, guess, tolerance);
-  });
+  return block_scheme(problem, [](const Membrane& m, double, const Coefficients& r, const Motion& guess,
+                                  double tolerance) { return solve_tension(m, r, guess, tolerance); });
 }
 
 }  // namespace
@@ -258,13 +266,16 @@ double gap_floor(const Model& s, const Dynamics& d) {
 
 Suspension freeze(const Model& s, const Dynamics& d, std::span<const Coefficients> frozen) {
   const NumericsParameters& n = s.scene.numerics;
-  SuspensionOptions options{n.source_order, {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
-                            n.repulsion_strength, n.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes(d)))};
+  SuspensionOptions options{n.source_order,
+                            {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
+                            n.repulsion_strength,
+                            n.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes(d)))};
   std::vector<Coefficients> expected;
   if (n.implicit_tension)
     for (const VesicleDynamics& v : d.vesicles) expected.push_back(v.motion.tension);
-  return freeze_suspension(s.plans, s.materials, frozen, upsamplings(d), options, expected,
-                           pinned_tensions(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, frozen, sizes(d)));
+  return freeze_suspension(
+      s.plans, s.materials, frozen, upsamplings(d), options, expected,
+      pinned_tensions(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, frozen, sizes(d)));
 }
 
 Attempt<SuspensionSolve> solve(const Model& s, const Suspension& suspension, double c, std::span<const Coefficients> r,

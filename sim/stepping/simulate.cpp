@@ -12,8 +12,8 @@ namespace {
 
 constexpr double same_time = 1e-9;  ///< times nearer than this share of a step are one time
 
-/// Time of the next saved state: multiples of save_every, and the end. Not counted from the last one, which may have been
-/// the end of a run that is continued, or saved by another measure.
+/// Time of the next saved state: multiples of save_every, and the end. Not counted from the last one, which may have
+/// been the end of a run that is continued, or saved by another measure.
 double save_time(const Scene& scene, const Dynamics& d) {
   if (!scene.time.save_every) return scene.time.end;
   const double every = *scene.time.save_every;
@@ -76,8 +76,10 @@ struct ResumeRecord {
   const std::filesystem::path& path;
 
   [[noreturn]] void refuse(std::string_view why) const {
-    throw std::runtime_error(fmt::format("trajectory '{}' of version {} cannot be resumed: its resume record is damaged, or "
-                                         "of another version ({})", path.string(), file.header().program, why));
+    throw std::runtime_error(
+        fmt::format("trajectory '{}' of version {} cannot be resumed: its resume record is damaged, or "
+                    "of another version ({})",
+                    path.string(), file.header().program, why));
   }
   Dynamics read() const {
     try {
@@ -126,8 +128,10 @@ class Run {
       : model_(model), scene_(model.scene), options_(options), observer_(observer) {
     noting_ = observer;
     noting_.on_warning = [this](const std::string& warning) { warn(warning); };
-    if (options.resume) resume();
-    else begin();
+    if (options.resume)
+      resume();
+    else
+      begin();
     first_step_ = d_.step;
   }
 
@@ -179,7 +183,8 @@ class Run {
     expect(model_, d_, first);
     const TrajectoryLayout layout = layout_for(scene_, d_);
     mark_saved(d_, first);
-    file_.emplace(TrajectoryWriter::create(options_.trajectory, layout, header, first, serialised(d_), observer_.on_ready));
+    file_.emplace(
+        TrajectoryWriter::create(options_.trajectory, layout, header, first, serialised(d_), observer_.on_ready));
     if (observer_.on_state) observer_.on_state(first);
   }
 
@@ -188,7 +193,8 @@ class Run {
     file_.emplace(TrajectoryWriter::resume(options_.trajectory));
     d_ = resumed(*file_, scene_, options_.trajectory);
     if (observer_.on_ready) observer_.on_ready();
-    if (options_.another_time && d_.time < scene_.time.end) file_->continue_as(options_.scene_text, layout_for(scene_, d_));
+    if (options_.another_time && d_.time < scene_.time.end)
+      file_->continue_as(options_.scene_text, layout_for(scene_, d_));
   }
 
   std::optional<Rejection> save() {

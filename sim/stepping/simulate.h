@@ -10,18 +10,18 @@
 namespace sim {
 
 struct SimulationOptions {
-  std::filesystem::path trajectory;   ///< the file to write
-  bool resume = false;                ///< continue it
-  bool another_time = false;          ///< ... with a new end or other saved times: the file gets this scene
-  std::int64_t steps = -1;            ///< at most so many steps in this call; -1: to the end; 0: the initial state only
-  std::string scene_text;             ///< resolved scene, kept in the file
-  std::string program, build;         ///< version and compiler, kept in the file
+  std::filesystem::path trajectory;  ///< the file to write
+  bool resume = false;               ///< continue it
+  bool another_time = false;         ///< ... with a new end or other saved times: the file gets this scene
+  std::int64_t steps = -1;           ///< at most so many steps in this call; -1: to the end; 0: the initial state only
+  std::string scene_text;            ///< resolved scene, kept in the file
+  std::string program, build;        ///< version and compiler, kept in the file
 };
 
 /// Called from the simulating thread.
 struct SimulationObserver {
   std::function<void(const Dynamics&, const StepRecord&)> on_step;
-  std::function<void()> on_ready;     ///< once, before the file appears or changes: the scene can be simulated
+  std::function<void()> on_ready;  ///< once, before the file appears or changes: the scene can be simulated
   std::function<void(const State&)> on_state;
   std::function<void(const std::string&)> on_warning;
   std::function<bool()> should_stop;  ///< asked after every step

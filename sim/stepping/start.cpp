@@ -57,8 +57,8 @@ void start_anew(const Model& s, double time, VesicleDynamics& v) {
   v.upsampling_due = time + upsampling_steps * s.scene.time.step;
 }
 
-/// Longest step from a start: four until flows are switched again. A nearly round vesicle uses up its excess area in a time of sqrt(1 - nu) over the rate of
-/// straining; a quarter of it suits all contrasts from 0.1 on.
+/// Longest step from a start: four until flows are switched again. A nearly round vesicle uses up its excess area in a
+/// time of sqrt(1 - nu) over the rate of straining; a quarter of it suits all contrasts from 0.1 on.
 double start_step(const Model& s, const Dynamics& d) {
   const std::vector<AreaVolume> all = sizes(d);
   const double rate = straining_rate(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, positions(d), all);
@@ -102,15 +102,17 @@ Dynamics initial_dynamics(const Model& s) {
   if (const Gap gap = smallest_gap(s.plans, positions(d)); gap.crossing)
     throw std::invalid_argument(fmt::format("vesicles {} and {} overlap", gap.first, gap.second));
   else if (gap.distance < gap_floor(s, d))
-    throw std::invalid_argument(fmt::format("vesicles {} and {} are {:.3g} apart, less than numerics.gap_floor = {:.3g}",
-                                            gap.first, gap.second, gap.distance, gap_floor(s, d)));
+    throw std::invalid_argument(
+        fmt::format("vesicles {} and {} are {:.3g} apart, less than numerics.gap_floor = {:.3g}", gap.first, gap.second,
+                    gap.distance, gap_floor(s, d)));
   d.dt_limit = start_step(s, d);
   if (s.scene.time.scheme == "explicit")
     for (std::size_t k = 0; k < d.vesicles.size(); ++k)
       if (is_sphere({d.vesicles[k].area, d.vesicles[k].volume}))
-        throw std::invalid_argument(fmt::format("vesicle {} is a sphere, which the scheme 'explicit' cannot hold in shape; take "
-                                                "another time.scheme",
-                                                k));
+        throw std::invalid_argument(
+            fmt::format("vesicle {} is a sphere, which the scheme 'explicit' cannot hold in shape; take "
+                        "another time.scheme",
+                        k));
   return d;
 }
 

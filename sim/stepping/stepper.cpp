@@ -21,7 +21,8 @@ constexpr double four_pi = 4 * std::numbers::pi;
 
 double energy_of(const Geometry& g) { return integrate(g, g.H.cwiseAbs2()) / four_pi; }
 
-/// Moves the grid points along the membrane and carries everything that belongs to the material. False: it would not pay.
+/// Moves the grid points along the membrane and carries everything that belongs to the material. False: it would not
+/// pay.
 bool relabel_vesicle(const Model& s, VesicleDynamics& v) {
   const int p = v.position.order;
   const Relabelling r = relabel(s.plans, v.position, 2 * p);
@@ -47,7 +48,7 @@ bool relabelling_due(const std::string& mode, const VesicleDynamics& v) {
 /// Shifts x to the area and volume of the start, and its past along with it if the scheme says so; the longest shift.
 Attempt<double> correct(const Model& s, const Scheme& scheme, VesicleDynamics& v, const Geometry& g) {
   const Correction c = is_sphere({v.area, v.volume}) ? volume_correction(s.plans, v.position, g, v.area, v.volume)
-                                                   : area_volume_correction(s.plans, v.position, g, v.area, v.volume);
+                                                     : area_volume_correction(s.plans, v.position, g, v.area, v.volume);
   if (!c.converged || c.largest > 0.1 * std::sqrt(v.area / four_pi))
     return Rejection{fmt::format("the area and volume correction failed (shift {:.1e})", c.largest)};
   v.position.values += c.shift.values;
@@ -56,7 +57,8 @@ Attempt<double> correct(const Model& s, const Scheme& scheme, VesicleDynamics& v
 }
 
 /// Why a step must not have led to this geometry, if so.
-std::optional<Rejection> objection(const NumericsParameters& n, const Geometry& after, double area_before, double energy_before) {
+std::optional<Rejection> objection(const NumericsParameters& n, const Geometry& after, double area_before,
+                                   double energy_before) {
   const double change = after.dA.sum() / area_before - 1;
   if (!(std::abs(change) <= n.step_area_bound))
     return Rejection{fmt::format("the area changed by {:.2g} % in one step", 100 * change)};
@@ -126,8 +128,10 @@ std::optional<Rejection> finish_vesicles(const Model& s, Dynamics& d, Advance& a
   parallel_for(n, [&](int k) {
     const Attempt<VesicleStep> finished =
         within_domain([&] { return finish_vesicle(s, d.vesicles[k], std::move(advance.vesicles[k]), d.time); });
-    if (finished) record.vesicles[k] = *finished;
-    else rejections[k] = finished.rejection();
+    if (finished)
+      record.vesicles[k] = *finished;
+    else
+      rejections[k] = finished.rejection();
   });
   for (const auto& rejection : rejections)
     if (rejection) return rejection;

@@ -1,5 +1,5 @@
-// Time stepping: one step of the whole scene, by a scheme of the catalogue (schemes.h), with its checks, the area and volume
-// correction, reparametrization and the renewal of upsampling rates.
+// Time stepping: one step of the whole scene, by a scheme of the catalogue (schemes.h), with its checks, the area and
+// volume correction, reparametrization and the renewal of upsampling rates.
 #pragma once
 
 #include "sim/stepping/start.h"

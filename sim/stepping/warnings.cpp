@@ -22,8 +22,8 @@ std::string still_flow_warning(const Scene& scene, std::size_t k) {
   const FlowParameters& flow = scene.flows[k];
   const std::string table = scene.flows.size() > 1 ? fmt::format("[[flow]] {}", k) : "[flow]";
   if (flow.time_factor == "step" && (flow.from >= flow.until || flow.from >= scene.time.end || flow.until <= 0))
-    return fmt::format("{}: '{}' never acts: from = {}, until = {}, time.end = {}", table, flow.kind, flow.from, flow.until,
-                       scene.time.end);
+    return fmt::format("{}: '{}' never acts: from = {}, until = {}, time.end = {}", table, flow.kind, flow.from,
+                       flow.until, scene.time.end);
   std::string keys;
   for (std::string_view key : find_row(flow_catalogue(), flow.kind)->keys)
     if (key != "planar") keys += fmt::format("{}flow.{}", keys.empty() ? "" : " or ", key);
@@ -39,8 +39,9 @@ std::vector<std::string> scene_warnings(const Model& s, const Dynamics& d) {
     if (scene.flows[k].kind != "none" && scene.time.end > 0 && !moves(scene.flows[k], scene.time.end))
       warnings.push_back(still_flow_warning(scene, k));
   if (const double longest = longest_step(scene); longest < scene.time.step)
-    warnings.push_back(fmt::format("a flow oscillates {:.3g} times in a step of {:.3g}; steps of {:.3g} are taken, 20 a period",
-                                   scene.time.step / (20 * longest), scene.time.step, longest));
+    warnings.push_back(
+        fmt::format("a flow oscillates {:.3g} times in a step of {:.3g}; steps of {:.3g} are taken, 20 a period",
+                    scene.time.step / (20 * longest), scene.time.step, longest));
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
     if (d.vesicles[k].tail > scene.numerics.tail_warning) warnings.push_back(resolution_warning(s, d, k));
   return warnings;

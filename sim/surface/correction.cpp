@@ -15,12 +15,12 @@ Correction area_volume_correction(Plans& plans, const Coefficients& position, co
   const int p = position.order;
   const Basis& basis = plans.basis(p, measure_order(p));
   const double radius = std::sqrt(area / (4 * std::numbers::pi));
-  const Coefficients along[2] = {
-      basis.analyze(g.n), basis.analyze(Matrix((g.n.array().colwise() * (radius * g.H).array()).matrix()))};
+  const Coefficients along[2] = {basis.analyze(g.n),
+                                 basis.analyze(Matrix((g.n.array().colwise() * (radius * g.H).array()).matrix()))};
   Correction c{{p, Matrix::Zero(coefficient_count(p), 3)}, 0, 0, 0, false};
   Eigen::Vector2d amount = Eigen::Vector2d::Zero();
-  // d(area) = -2 int H (shift.n), d(volume) = int shift.n, from the geometry before the shift; Broyden's update learns how
-  // they change with it. The rows are made dimensionless.
+  // d(area) = -2 int H (shift.n), d(volume) = int shift.n, from the geometry before the shift; Broyden's update learns
+  // how they change with it. The rows are made dimensionless.
   Eigen::Matrix2d slope;
   const double h = integrate(g, g.H), hh = integrate(g, g.H.cwiseAbs2());
   slope << -2 * h / area, -2 * radius * hh / area, g.dA.sum() / volume, radius * h / volume;
@@ -47,7 +47,8 @@ Correction area_volume_correction(Plans& plans, const Coefficients& position, co
   return c;
 }
 
-Correction volume_correction(Plans& plans, const Coefficients& position, const Geometry& g, double area, double volume) {
+Correction volume_correction(Plans& plans, const Coefficients& position, const Geometry& g, double area,
+                             double volume) {
   const int p = position.order;
   const Basis& basis = plans.basis(p, measure_order(p));
   const Coefficients along = basis.analyze(g.n);

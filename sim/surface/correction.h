@@ -1,14 +1,14 @@
 // Area and volume correction: x += (a + b H) n with a, b from a 2x2 Newton iteration restores A0 and V0 after a step.
 #pragma once
 
-#include "sim/surface/geometry.h"
 #include "sim/layers/plans.h"
+#include "sim/surface/geometry.h"
 
 namespace sim {
 
 struct Correction {
-  Coefficients shift;    ///< to add to the position, degree p
-  double largest = 0;    ///< longest shift of a grid point
+  Coefficients shift;           ///< to add to the position, degree p
+  double largest = 0;           ///< longest shift of a grid point
   double area = 0, volume = 0;  ///< after it
   bool converged = false;
 };

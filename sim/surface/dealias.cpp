@@ -23,7 +23,8 @@ int upsampling_rate(Plans& plans, const Coefficients& position, double tolerance
 }
 
 double curvature_tail(const Basis& basis, const Geometry& geometry) {
-  // Near a sphere there is hardly a spectrum beside the mean: what is a hundredth of that needs no resolution of its own.
+  // Near a sphere there is hardly a spectrum beside the mean: what is a hundredth of that needs no resolution of its
+  // own.
   constexpr double negligible = 1e-2;
   const Coefficients h = basis.analyze(Matrix(geometry.H));
   const double whole = std::max(band_norm(h, 1, h.order), negligible * modular_norm(h, 0));

@@ -1,8 +1,8 @@
 // Dealiasing: the grid on which a surface of degree p is differentiated (Algorithm 1, Eqs. (28), (29)).
 #pragma once
 
-#include "sim/surface/geometry.h"
 #include "sim/layers/plans.h"
+#include "sim/surface/geometry.h"
 
 namespace sim {
 

@@ -104,8 +104,6 @@ double inclination(const Eigen::Matrix3d& moments) {
   return angle <= -std::numbers::pi / 2 ? angle + std::numbers::pi : angle;
 }
 
-double reduced_volume(double area, double volume) {
-  return volume / (4 * pi / 3 * std::pow(area / (4 * pi), 1.5));
-}
+double reduced_volume(double area, double volume) { return volume / (4 * pi / 3 * std::pow(area / (4 * pi), 1.5)); }
 
 }  // namespace sim

@@ -1,6 +1,6 @@
-// Geometry of a surface x(theta, phi) on a grid: first and second fundamental form, normal, mean and Gaussian curvature,
-// area element, and the surface gradient (25), divergence (26) and Laplacian built from them.
-// n = x_theta x x_phi / W points outward; H = (EN - 2FM + GL)/(2 W^2), so H = -1/R on a sphere and Laplacian x = 2 H n.
+// Geometry of a surface x(theta, phi) on a grid: first and second fundamental form, normal, mean and Gaussian
+// curvature, area element, and the surface gradient (25), divergence (26) and Laplacian built from them. n = x_theta x
+// x_phi / W points outward; H = (EN - 2FM + GL)/(2 W^2), so H = -1/R on a sphere and Laplacian x = 2 H n.
 #pragma once
 
 #include "sim/sphere/basis.h"
@@ -12,13 +12,13 @@ namespace sim {
 constexpr int measure_order(int p) { return 2 * p + 8; }
 
 struct Geometry {
-  SecondDerivatives x;             ///< position and derivatives, points x 3
-  Vector E, F, G, W;               ///< first fundamental form, W = sqrt(EG - F^2) (contains sin theta)
-  Vector L, M, N;                  ///< second fundamental form
-  Matrix n;                        ///< outward unit normal, points x 3
-  Vector H, K;                     ///< mean and Gaussian curvature
-  Vector dA;                       ///< quadrature weights of surface integrals, Eq. (17): w_i mu_j W / sin theta
-  Matrix grad_t, grad_f;           ///< (G x_t - F x_f)/W^2 and (E x_f - F x_t)/W^2: gradient = grad_t f_t + grad_f f_f
+  SecondDerivatives x;    ///< position and derivatives, points x 3
+  Vector E, F, G, W;      ///< first fundamental form, W = sqrt(EG - F^2) (contains sin theta)
+  Vector L, M, N;         ///< second fundamental form
+  Matrix n;               ///< outward unit normal, points x 3
+  Vector H, K;            ///< mean and Gaussian curvature
+  Vector dA;              ///< quadrature weights of surface integrals, Eq. (17): w_i mu_j W / sin theta
+  Matrix grad_t, grad_f;  ///< (G x_t - F x_f)/W^2 and (E x_f - F x_t)/W^2: gradient = grad_t f_t + grad_f f_f
   Vector lap_tt, lap_tf, lap_ff, lap_t, lap_f;  ///< Laplacian f = lap_tt f_tt + ... + lap_f f_f, pointwise
 };
 

@@ -20,8 +20,8 @@ Vec3 parameter_shift(const SphereFrame& frame, const Vec3& x_t, const Vec3& x_f,
 
 }  // namespace
 
-/// Weight of the degrees p/2..p in E, where those beyond p have 1. Measured on twisted prolates at p = 8, 12, 16: against
-/// equal weights it gains somewhat less and loses six times less of the shape.
+/// Weight of the degrees p/2..p in E, where those beyond p have 1. Measured on twisted prolates at p = 8, 12, 16:
+/// against equal weights it gains somewhat less and loses six times less of the shape.
 constexpr double weight_kept = 0.1;
 
 double high_degree_share(const Coefficients& x) { return tail_share(x, (x.order + 1) / 2); }

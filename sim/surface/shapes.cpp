@@ -1,7 +1,7 @@
 #include "sim/surface/shapes.h"
 
-#include "sim/surface/geometry.h"
 #include "sim/core/input_file.h"
+#include "sim/surface/geometry.h"
 
 #include <fmt/format.h>
 
@@ -91,10 +91,12 @@ Coefficients harmonics(const VesicleParameters& v) {
   int degree = 0;
   for (const auto& [n, m, value] : v.coefficients) {
     if (n != std::floor(n) || m != std::floor(m) || n < 0 || std::abs(m) > n || n > 128)
-      throw std::invalid_argument(fmt::format("coefficients [{}, {}, {}]: n must be an integer in 0..128 and |m| at most n", n, m, value));
+      throw std::invalid_argument(
+          fmt::format("coefficients [{}, {}, {}]: n must be an integer in 0..128 and |m| at most n", n, m, value));
     degree = std::max(degree, int(n));
   }
-  if (v.coefficients.empty()) throw std::invalid_argument("shape 'harmonics' needs coefficients = [[n, m, value], ...]");
+  if (v.coefficients.empty())
+    throw std::invalid_argument("shape 'harmonics' needs coefficients = [[n, m, value], ...]");
   Coefficients rho{degree, Matrix::Zero(coefficient_count(degree), 1)};
   rho.values(0, 0) = std::sqrt(4 * pi);
   for (const auto& [n, m, value] : v.coefficients) rho.values(coefficient_index(int(n), int(m)), 0) += value;
@@ -129,8 +131,8 @@ Coefficients from_file(const VesicleParameters& v) {
     if (kind.empty()) {
       kind = word;
       if (kind == "grid" ? !(words >> grid_order) || grid_order < 1 || grid_order > 512 : kind != "coefficients")
-        throw std::invalid_argument(
-            fmt::format("{}:{}: expected 'coefficients' or 'grid q' (q from 1 to 512), got '{}'", v.file, number, line));
+        throw std::invalid_argument(fmt::format(
+            "{}:{}: expected 'coefficients' or 'grid q' (q from 1 to 512), got '{}'", v.file, number, line));
       continue;
     }
     words.clear();
@@ -143,7 +145,8 @@ Coefficients from_file(const VesicleParameters& v) {
     if (words >> word) throw std::invalid_argument(fmt::format("{}:{}: more than {} columns", v.file, number, columns));
     if (columns == 5 && (row[0] != std::floor(row[0]) || row[1] != std::floor(row[1]) || row[0] < 0 || row[0] > 128 ||
                          std::abs(row[1]) > row[0]))
-      throw std::invalid_argument(fmt::format("{}:{}: n must be an integer in 0..128 and |m| at most n", v.file, number));
+      throw std::invalid_argument(
+          fmt::format("{}:{}: n must be an integer in 0..128 and |m| at most n", v.file, number));
     rows.push_back(row);
   }
   if (rows.empty()) throw std::invalid_argument(fmt::format("{}: no table in it", v.file));
@@ -151,14 +154,14 @@ Coefficients from_file(const VesicleParameters& v) {
     int degree = 0;
     for (const auto& row : rows) degree = std::max(degree, int(row[0]));
     Coefficients c{degree, Matrix::Zero(coefficient_count(degree), 3)};
-    for (const auto& row : rows)
-      c.values.row(coefficient_index(int(row[0]), int(row[1]))) << row[2], row[3], row[4];
+    for (const auto& row : rows) c.values.row(coefficient_index(int(row[0]), int(row[1]))) << row[2], row[3], row[4];
     return resized(c, v.order);
   }
   // Before anything of that size is computed.
-  if (const std::size_t expected = std::size_t(grid_order + 1) * std::size_t(2 * grid_order + 2); rows.size() != expected)
-    throw std::invalid_argument(fmt::format("{}: a grid of order {} has {} rows, the file {}", v.file, grid_order, expected,
-                                            rows.size()));
+  if (const std::size_t expected = std::size_t(grid_order + 1) * std::size_t(2 * grid_order + 2);
+      rows.size() != expected)
+    throw std::invalid_argument(
+        fmt::format("{}: a grid of order {} has {} rows, the file {}", v.file, grid_order, expected, rows.size()));
   const Basis basis(std::min(v.order, grid_order), grid_order);
   Matrix samples(basis.points(), 3);
   for (int k = 0; k < basis.points(); ++k) samples.row(k) << rows[k][0], rows[k][1], rows[k][2];
@@ -185,12 +188,18 @@ Vec3 spheroid_axes(double nu, bool prolate) {
 const std::vector<CatalogueRow<ShapeFunction>>& shape_catalogue() {
   static const std::vector<CatalogueRow<ShapeFunction>> table{
       {"sphere", "sphere", {}, [](const VesicleParameters& v) { return ellipsoid(v.order, Vec3::Ones()); }},
-      {"prolate", "prolate spheroid of a given reduced volume", {"reduced_volume"},
+      {"prolate",
+       "prolate spheroid of a given reduced volume",
+       {"reduced_volume"},
        [](const VesicleParameters& v) { return spheroid(v, true); }},
-      {"oblate", "oblate spheroid of a given reduced volume", {"reduced_volume"},
+      {"oblate",
+       "oblate spheroid of a given reduced volume",
+       {"reduced_volume"},
        [](const VesicleParameters& v) { return spheroid(v, false); }},
       {"biconcave", "biconcave disc of a given reduced volume", {"reduced_volume"}, biconcave},
-      {"ellipsoid", "ellipsoid of given semi-axes", {"axes"},
+      {"ellipsoid",
+       "ellipsoid of given semi-axes",
+       {"axes"},
        [](const VesicleParameters& v) {
          if (!v.axes) throw std::invalid_argument("shape 'ellipsoid' needs axes = [a, b, c]");
          return ellipsoid(v.order, {(*v.axes)[2], (*v.axes)[1], (*v.axes)[0]});
@@ -209,7 +218,8 @@ Coefficients initial_position(const VesicleParameters& v) {
   const Basis fine(c.order, 4 * c.order + 32);
   const AreaVolume size = area_volume(fine, c);
   if (!(size.area > 0) || !(size.volume > 0))
-    throw std::invalid_argument(fmt::format("shape '{}' encloses no volume (is its table turned inside out?)", v.shape));
+    throw std::invalid_argument(
+        fmt::format("shape '{}' encloses no volume (is its table turned inside out?)", v.shape));
   const bool own_size = v.shape == "ellipsoid" || v.shape == "file";
   if (v.area || v.radius || !own_size) {
     const double area = v.area ? *v.area : v.radius ? 4 * pi * *v.radius * *v.radius : default_area;

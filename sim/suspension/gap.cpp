@@ -1,7 +1,7 @@
 #include "sim/suspension/gap.h"
 
-#include "sim/layers/far_field.h"
 #include "sim/core/parallel.h"
+#include "sim/layers/far_field.h"
 
 #include <cmath>
 #include <limits>
@@ -12,7 +12,8 @@ namespace sim {
 
 namespace {
 
-/// Solid angle of a surface at x over 4 pi: 1 inside, 0 outside; by the smooth rule, so right to about one half near it.
+/// Solid angle of a surface at x over 4 pi: 1 inside, 0 outside; by the smooth rule, so right to about one half near
+/// it.
 double winding(const Sources& s, const Vec3& x) {
   double sum = 0;
   for (Eigen::Index k = 0; k < s.points.rows(); ++k) {
@@ -33,7 +34,13 @@ struct ApproachSlope {
   const Coefficients &x, &y;
   Vec3 s, t, a1, a2, b1, b2;
   ApproachSlope(const Coefficients& first, const Coefficients& second, const Approach& at)
-      : x(first), y(second), s(at.s), t(at.t), a1(s.unitOrthogonal()), a2(s.cross(a1)), b1(t.unitOrthogonal()),
+      : x(first),
+        y(second),
+        s(at.s),
+        t(at.t),
+        a1(s.unitOrthogonal()),
+        a2(s.cross(a1)),
+        b1(t.unitOrthogonal()),
         b2(t.cross(b1)) {}
   Approach moved(const Eigen::Vector4d& q) const {
     Approach m{(s + q[0] * a1 + q[1] * a2).normalized(), (t + q[2] * b1 + q[3] * b2).normalized(), 0};
@@ -65,7 +72,8 @@ Approach nearest_approach(const Coefficients& x, const Coefficients& y, Approach
     }
     // Directions of negative or no curvature are walked down by their size.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(curvature);
-    const Eigen::Vector4d size = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-6 * eigen.eigenvalues().cwiseAbs().maxCoeff());
+    const Eigen::Vector4d size =
+        eigen.eigenvalues().cwiseAbs().cwiseMax(1e-6 * eigen.eigenvalues().cwiseAbs().maxCoeff());
     Eigen::Vector4d step = -eigen.eigenvectors() * (eigen.eigenvectors().transpose() * slope).cwiseQuotient(size);
     if (step.norm() > 0.2) step *= 0.2 / step.norm();
     bool nearer = false;

@@ -106,7 +106,8 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
   for (int i = 0; i < n; ++i) groups.push_back({coarse[i].points, i});
   w.far = plan_far_field(std::make_shared<const std::vector<Sources>>(std::move(coarse)), std::move(groups));
   w.pairs = candidates(w, options.coarse_spacings);
-  parallel_for(int(w.pairs.size()), [&](int k) { fill(w.pairs[k], w, positions, *rotations[w.pairs[k].source], options); });
+  parallel_for(int(w.pairs.size()),
+               [&](int k) { fill(w.pairs[k], w, positions, *rotations[w.pairs[k].source], options); });
   std::erase_if(w.pairs, [](const PairPlan& pair) { return pair.fine.empty() && pair.near.empty(); });
   exclude(w.far, exclusions(w.pairs));
   return w;
@@ -156,8 +157,9 @@ std::vector<Coefficients> repulsion(const Interaction& w, double strength, doubl
     for (std::size_t k = 0; k < pair.near.size(); ++k) {
       const NearestPoint& nearest = pair.nearest[k];
       const int row = pair.near[k];
-      force[pair.target].row(row) += strength * std::exp(-nearest.distance / range) *
-                                     (w.far.groups[pair.target].points.row(row) - nearest.position.transpose()).normalized();
+      force[pair.target].row(row) +=
+          strength * std::exp(-nearest.distance / range) *
+          (w.far.groups[pair.target].points.row(row) - nearest.position.transpose()).normalized();
     }
   std::vector<Coefficients> result;
   for (std::size_t i = 0; i < n; ++i) result.push_back(w.target_basis[i]->analyze(force[i]));

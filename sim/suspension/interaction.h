@@ -1,27 +1,27 @@
 // Hydrodynamic interaction: single and double layer of each vesicle, evaluated at the grid points of the others.
 //
-// All pairs are summed by the smooth rule on coarse source grids (far_field.h). Where that is not good enough, the smooth
-// rule on a finer grid of order q ~ p^(3/2) takes its place (section 3.1.10), and nearer than four of its local spacings the
-// near-singular rule of near.h, one row per target, assembled once per step. Pairs of this kind are few, and found by cells.
-// The interface is only "velocity at targets from densities on sources".
+// All pairs are summed by the smooth rule on coarse source grids (far_field.h). Where that is not good enough, the
+// smooth rule on a finer grid of order q ~ p^(3/2) takes its place (section 3.1.10), and nearer than four of its local
+// spacings the near-singular rule of near.h, one row per target, assembled once per step. Pairs of this kind are few,
+// and found by cells. The interface is only "velocity at targets from densities on sources".
 #pragma once
 
-#include "sim/membrane/block.h"
 #include "sim/layers/far_field.h"
 #include "sim/layers/near.h"
+#include "sim/membrane/block.h"
 
 namespace sim {
 
 struct InteractionOptions {
-  int source_order = 0;      ///< q of the smooth rule; 0: p^(3/2), rounded up
+  int source_order = 0;  ///< q of the smooth rule; 0: p^(3/2), rounded up
   bool near_rule = true;
   NearOrder near_order;
-  double near_spacings = 4;  ///< targets nearer than this many local spacings use the near rule
+  double near_spacings = 4;    ///< targets nearer than this many local spacings use the near rule
   double coarse_spacings = 6;  ///< targets farther than this many spacings of the coarse grid use that grid; 0: none
 };
 
-/// What one vesicle makes at those targets of another that are excluded from the far field: by the smooth rule on its fine
-/// grid, or by rows, with the nearest point of the source for each of these.
+/// What one vesicle makes at those targets of another that are excluded from the far field: by the smooth rule on its
+/// fine grid, or by rows, with the nearest point of the source for each of these.
 struct PairPlan {
   int target = 0, source = 0;
   std::vector<int> fine, near;
@@ -30,11 +30,12 @@ struct PairPlan {
 };
 
 struct Interaction {
-  std::vector<const Basis*> source_basis, target_basis;  ///< fine source grids; target grids, which are the coarse source grids
-  FarField far;                     ///< on the coarse grids
-  std::vector<Sources> sources;     ///< on the fine grids
-  std::vector<PairPlan> pairs;      ///< by target, then source
-  std::vector<char> dual;           ///< per source vesicle: its viscosity contrast differs from 1
+  std::vector<const Basis*> source_basis,
+      target_basis;              ///< fine source grids; target grids, which are the coarse source grids
+  FarField far;                  ///< on the coarse grids
+  std::vector<Sources> sources;  ///< on the fine grids
+  std::vector<PairPlan> pairs;   ///< by target, then source
+  std::vector<char> dual;        ///< per source vesicle: its viscosity contrast differs from 1
 };
 
 /// Throws std::domain_error when a target lies inside another vesicle.

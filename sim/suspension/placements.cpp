@@ -1,9 +1,9 @@
 #include "sim/suspension/placements.h"
 
-#include "sim/suspension/gap.h"
-#include "sim/surface/geometry.h"
 #include "sim/core/input_file.h"
+#include "sim/surface/geometry.h"
 #include "sim/surface/shapes.h"
+#include "sim/suspension/gap.h"
 
 #include <fmt/format.h>
 
@@ -43,7 +43,9 @@ Extent extent(const VesicleParameters& v) {
   return {size.volume, distance.maxCoeff(), distance.minCoeff(), std::sqrt(size.area / (4 * pi))};
 }
 
-double gap_of(const PlacementParameters& p, const Extent& e) { return p.gap.value_or(default_placement_gap * e.radius); }
+double gap_of(const PlacementParameters& p, const Extent& e) {
+  return p.gap.value_or(default_placement_gap * e.radius);
+}
 
 /// Positions that have been taken, and whether another one keeps its distance from all of them.
 struct Occupied {
@@ -72,10 +74,11 @@ void require_room(const PlacementParameters& p, const Extent& e, double room) {
   const double gap = gap_of(p, e), equivalent = std::cbrt(3 * e.volume / (4 * pi));
   const double filled = p.count * 4 * pi / 3 * std::pow(equivalent + gap / 2, 3) / room;
   if (p.count > 1 && filled > fullest)
-    throw std::invalid_argument(fmt::format(
-        "{} vesicles of radius {:.3g} with gaps of {:.3g} cannot be placed at random at a volume fraction of {}: with half the gap "
-        "about each they would fill {:.0f} % of the room; give a smaller volume_fraction or gap",
-        p.count, e.radius, gap, p.volume_fraction, 100 * filled));
+    throw std::invalid_argument(
+        fmt::format("{} vesicles of radius {:.3g} with gaps of {:.3g} cannot be placed at random at a volume fraction "
+                    "of {}: with half the gap "
+                    "about each they would fill {:.0f} % of the room; give a smaller volume_fraction or gap",
+                    p.count, e.radius, gap, p.volume_fraction, 100 * filled));
 }
 
 /// Copies at random points of a region, one after another, each free of those before.
@@ -103,14 +106,15 @@ std::vector<VesicleParameters> insert_at_random(const PlacementParameters& p, co
       all.push_back(std::move(v));
     }
     if (!found)
-      throw std::invalid_argument(fmt::format(
-          "only {} of {} vesicles could be placed at a volume fraction of {} with gaps of {:.3g}", all.size(), p.count,
-          p.volume_fraction, gap));
+      throw std::invalid_argument(
+          fmt::format("only {} of {} vesicles could be placed at a volume fraction of {} with gaps of {:.3g}",
+                      all.size(), p.count, p.volume_fraction, gap));
   }
   return all;
 }
 
-std::vector<VesicleParameters> lattice(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion&) {
+std::vector<VesicleParameters> lattice(const PlacementParameters& p, const VesicleParameters& original,
+                                       const StopQuestion&) {
   const int side = int(std::ceil(std::cbrt(double(p.count)) - 1e-9));
   const double spacing = std::cbrt(extent(original).volume / p.volume_fraction);
   std::mt19937_64 random(std::uint64_t(p.seed));
@@ -126,7 +130,8 @@ std::vector<VesicleParameters> lattice(const PlacementParameters& p, const Vesic
   return all;
 }
 
-std::vector<VesicleParameters> box(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion& stop) {
+std::vector<VesicleParameters> box(const PlacementParameters& p, const VesicleParameters& original,
+                                   const StopQuestion& stop) {
   const Extent e = extent(original);
   const double side = std::cbrt(p.count * e.volume / p.volume_fraction);
   require_room(p, e, std::pow(side + 2 * e.reach + gap_of(p, e), 3));
@@ -135,12 +140,13 @@ std::vector<VesicleParameters> box(const PlacementParameters& p, const VesiclePa
   });
 }
 
-std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion& stop) {
+std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleParameters& original,
+                                    const StopQuestion& stop) {
   const Extent e = extent(original);
   const double radius = p.radius.value_or(default_tube_radius * e.radius);
   if (radius <= e.reach)
-    throw std::invalid_argument(fmt::format("a tube of radius {:.3g} is narrower than a vesicle, which reaches {:.3g} from its centre",
-                                            radius, e.reach));
+    throw std::invalid_argument(fmt::format(
+        "a tube of radius {:.3g} is narrower than a vesicle, which reaches {:.3g} from its centre", radius, e.reach));
   const double length = p.count * e.volume / p.volume_fraction / (pi * radius * radius);
   require_room(p, e, pi * std::pow(radius + gap_of(p, e) / 2, 2) * (length + 2 * e.reach + gap_of(p, e)));
   return insert_at_random(p, original, e, stop, [&, length](std::mt19937_64& random) {
@@ -149,7 +155,8 @@ std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleP
   });
 }
 
-std::vector<VesicleParameters> from_file(const PlacementParameters& p, const VesicleParameters& original, const StopQuestion&) {
+std::vector<VesicleParameters> from_file(const PlacementParameters& p, const VesicleParameters& original,
+                                         const StopQuestion&) {
   std::string why;
   std::ifstream in = open_input(p.file, why);
   if (!in) throw std::invalid_argument(fmt::format("cannot read the table of centres '{}': {}", p.file, why));
@@ -165,12 +172,13 @@ std::vector<VesicleParameters> from_file(const PlacementParameters& p, const Ves
     if (words >> rest) throw std::invalid_argument(fmt::format("{}:{}: '{}' is not a number", p.file, number, rest));
     if (row.empty()) continue;
     if (row.size() != 3 && row.size() != 6)
-      throw std::invalid_argument(fmt::format("{}:{}: expected x y z or x y z and an axis, got {} numbers", p.file, number,
-                                              row.size()));
+      throw std::invalid_argument(
+          fmt::format("{}:{}: expected x y z or x y z and an axis, got {} numbers", p.file, number, row.size()));
     VesicleParameters v = original;
     v.center = p.center + Vec3(row[0], row[1], row[2]);
     if (row.size() == 6) v.axis = Vec3(row[3], row[4], row[5]);
-    if (v.axis && !(v.axis->norm() > 0)) throw std::invalid_argument(fmt::format("{}:{}: the axis has no direction", p.file, number));
+    if (v.axis && !(v.axis->norm() > 0))
+      throw std::invalid_argument(fmt::format("{}:{}: the axis has no direction", p.file, number));
     all.push_back(std::move(v));
   }
   if (all.empty()) throw std::invalid_argument(fmt::format("{}: no centres in it", p.file));
@@ -181,9 +189,15 @@ std::vector<VesicleParameters> from_file(const PlacementParameters& p, const Ves
 
 const std::vector<CatalogueRow<PlacementFunction>>& placement_catalogue() {
   static const std::vector<CatalogueRow<PlacementFunction>> table{
-      {"lattice", "cubic lattice, centres shifted at random by jitter", {"volume_fraction", "jitter", "count", "orientation", "seed"}, lattice},
+      {"lattice",
+       "cubic lattice, centres shifted at random by jitter",
+       {"volume_fraction", "jitter", "count", "orientation", "seed"},
+       lattice},
       {"box", "at random without overlap in a cube", {"volume_fraction", "gap", "count", "orientation", "seed"}, box},
-      {"tube", "at random without overlap in a tube along x", {"volume_fraction", "radius", "gap", "count", "orientation", "seed"}, tube},
+      {"tube",
+       "at random without overlap in a tube along x",
+       {"volume_fraction", "radius", "gap", "count", "orientation", "seed"},
+       tube},
       {"file", "centres from a text table", {"file"}, from_file},
   };
   return table;

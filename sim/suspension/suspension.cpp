@@ -44,12 +44,13 @@ std::vector<std::optional<PinnedTension>> pinned_tensions(Plans& plans, std::spa
                                                           std::span<const AreaVolume> sizes) {
   std::vector<std::optional<PinnedTension>> pinned(positions.size());
   if (std::none_of(sizes.begin(), sizes.end(), is_sphere)) return pinned;
-  // Out of round by 0.7e-5 radii; more stiffness costs iterations. In an instantaneous problem a tenth of the time in which
-  // the flow strains the sphere gives the same iterations as a usual step.
+  // Out of round by 0.7e-5 radii; more stiffness costs iterations. In an instantaneous problem a tenth of the time in
+  // which the flow strains the sphere gives the same iterations as a usual step.
   constexpr double stiffness = 1e5, share = 0.1;
   const double rate = straining_rate(plans, flows, gravity, materials, positions, sizes);
   for (std::size_t k = 0; k < positions.size(); ++k)
-    if (is_sphere(sizes[k])) pinned[k] = PinnedTension{stiffness * rate * area_radius(sizes[k]), rate > 0 ? share / rate : 0};
+    if (is_sphere(sizes[k]))
+      pinned[k] = PinnedTension{stiffness * rate * area_radius(sizes[k]), rate > 0 ? share / rate : 0};
   return pinned;
 }
 
@@ -171,7 +172,8 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
   std::vector<Block> blocks;
   std::vector<Vector> right, start;
   std::vector<Coefficients> rigid;
-  // A rigid motion solves the homogeneous equations for itself: (39) maps it to itself and every other vesicle to nothing.
+  // A rigid motion solves the homogeneous equations for itself: (39) maps it to itself and every other vesicle to
+  // nothing.
   for (int i = 0; i < n; ++i) {
     const Membrane& m = s.membranes[i];
     blocks.push_back(vesicle_block(m, c, kind));
@@ -182,9 +184,9 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
     if (m.pinned) start[i][start[i].size() - coefficient_count(m.order())] = 0;
   }
   constexpr int most_iterations = 300;
-  const GmresResult result =
-      gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, y); },
-            [&](const Vector& y) { return precondition_blocks(blocks, y); }, join(right), join(start), tolerance, most_iterations);
+  const GmresResult result = gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, y); },
+                                   [&](const Vector& y) { return precondition_blocks(blocks, y); }, join(right),
+                                   join(start), tolerance, most_iterations);
   SuspensionSolve solve{{}, result.iterations, result.residual, result.converged};
   const std::vector<Vector> parts = split(blocks, result.solution);
   for (int i = 0; i < n; ++i) {

@@ -13,7 +13,7 @@ struct Suspension {
 };
 
 struct SuspensionOptions {
-  int source_order = 0;           ///< of the singular rule
+  int source_order = 0;  ///< of the singular rule
   InteractionOptions interaction;
   double repulsion_strength = 0, repulsion_range = 0.05;  ///< strength 0: none
 };
@@ -27,7 +27,8 @@ double straining_rate(Plans&, std::span<const FlowParameters>, const Vec3& gravi
 
 /// The tensions of the spheres among them, from the strain rate of the scene.
 std::vector<std::optional<PinnedTension>> pinned_tensions(Plans&, std::span<const FlowParameters>, const Vec3& gravity,
-                                                          std::span<const Material>, std::span<const Coefficients> positions,
+                                                          std::span<const Material>,
+                                                          std::span<const Coefficients> positions,
                                                           std::span<const AreaVolume> sizes);
 
 /// Smallest area radius.

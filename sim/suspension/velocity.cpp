@@ -1,7 +1,7 @@
 #include "sim/suspension/velocity.h"
 
-#include "sim/surface/dealias.h"
 #include "sim/core/parallel.h"
+#include "sim/surface/dealias.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,25 +22,28 @@ FlowSource::Level level(Plans& plans, const FlowSource& source, int order) {
 
 /// How points see one membrane.
 struct View {
-  std::vector<int> near;                                                            ///< by the near rule
+  std::vector<int> near;                                                               ///< by the near rule
   std::array<std::vector<int>, std::tuple_size_v<decltype(FlowSource::finer)>> finer;  ///< by finer grids
-  std::vector<Vec3> start;                                                          ///< for the near ones: where to look
+  std::vector<Vec3> start;  ///< for the near ones: where to look
 };
 
 /// The rest of a block of points sees the coarse grids.
 struct PointBlock {
   Matrix points;
-  std::vector<View> views;     ///< by membrane
-  Vector distance;             ///< to the nearest membrane
-  std::vector<int> within;     ///< the vesicle that contains the point, -1 outside all
+  std::vector<View> views;                     ///< by membrane
+  Vector distance;                             ///< to the nearest membrane
+  std::vector<int> within;                     ///< the vesicle that contains the point, -1 outside all
   std::vector<std::pair<int, Vec3>> touching;  ///< points on a membrane, and its velocity there
 };
 
 /// Sorts points by how far they are from each membrane.
 PointBlock sorted(const FlowField& field, Matrix points) {
   const int count = int(points.rows());
-  PointBlock block{std::move(points), std::vector<View>(field.sources.size()),
-                   Vector::Constant(count, std::numeric_limits<double>::infinity()), std::vector<int>(count, -1), {}};
+  PointBlock block{std::move(points),
+                   std::vector<View>(field.sources.size()),
+                   Vector::Constant(count, std::numeric_limits<double>::infinity()),
+                   std::vector<int>(count, -1),
+                   {}};
   for (std::size_t j = 0; j < field.sources.size(); ++j) {
     const Sources& coarse = (*field.coarse)[j];
     View& view = block.views[j];
@@ -50,7 +53,8 @@ PointBlock sorted(const FlowField& field, Matrix points) {
       // The membrane may come nearer between source points: the nearest is at most half a diagonal of a cell off.
       const double spacing = coarse.spacing[at], distance = away - 0.71 * spacing;
       std::size_t halvings = 0;
-      while (halvings <= view.finer.size() && distance < field.options.spacings * std::ldexp(spacing, -int(halvings))) ++halvings;
+      while (halvings <= view.finer.size() && distance < field.options.spacings * std::ldexp(spacing, -int(halvings)))
+        ++halvings;
       if (halvings > view.finer.size()) {
         view.near.push_back(k);
         view.start.push_back(field.sources[j].directions.row(at).transpose());
@@ -76,7 +80,8 @@ std::vector<int> excluded(const View& view) {
 void add_near(const FlowField& field, int j, PointBlock& block, Matrix& u) {
   const FlowSource& source = field.sources[j];
   const View& view = block.views[j];
-  constexpr double touching = 1e-7;  // of the vesicle's size: nearer, the velocity is the membrane's to all digits wanted
+  constexpr double touching =
+      1e-7;  // of the vesicle's size: nearer, the velocity is the membrane's to all digits wanted
   const Box& box = (*field.coarse)[j].box;
   for (std::size_t n = 0; n < view.near.size(); ++n) {
     const int k = view.near[n];
@@ -88,8 +93,8 @@ void add_near(const FlowField& field, int j, PointBlock& block, Matrix& u) {
       block.touching.emplace_back(k, sample_points(source.velocity, nearest.parameter.transpose()).row(0).transpose());
       continue;
     }
-    u.row(k) += near_velocity(*source.rotation, source.position, x, nearest, field.options.near_order, source.densities.force,
-                              source.viscosity_contrast != 1 ? &source.densities.dual : nullptr)
+    u.row(k) += near_velocity(*source.rotation, source.position, x, nearest, field.options.near_order,
+                              source.densities.force, source.viscosity_contrast != 1 ? &source.densities.dual : nullptr)
                     .transpose();
   }
   for (std::size_t l = 0; l < view.finer.size(); ++l) {
@@ -120,16 +125,18 @@ FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const
   const auto pinned = pinned_tensions(plans, scene.flows, scene.buoyancy.gravity, materials, positions, sizes);
   std::vector<Coefficients> repelled;
   if (n > 1 && numerics.repulsion_strength > 0) {
-    const InteractionOptions interaction{numerics.interaction_order, numerics.near_rule, {numerics.near_latitudes, numerics.near_longitudes}};
+    const InteractionOptions interaction{
+        numerics.interaction_order, numerics.near_rule, {numerics.near_latitudes, numerics.near_longitudes}};
     repelled = repulsion(plan_interaction(plans, positions, materials, interaction), numerics.repulsion_strength,
                          numerics.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes)));
   }
   for (int i = 0; i < n; ++i) {
     const VesicleState& v = state.vesicles[i];
     const int p = v.position.order;
-    const int rate = numerics.upsampling > 0 ? numerics.upsampling
-                                             : upsampling_rate(plans, v.position, numerics.aliasing_tolerance);
-    const Sheet m = freeze_sheet(plans, materials[i], v.position, rate, {}, options.hold_spheres ? pinned[i] : std::nullopt);
+    const int rate =
+        numerics.upsampling > 0 ? numerics.upsampling : upsampling_rate(plans, v.position, numerics.aliasing_tolerance);
+    const Sheet m =
+        freeze_sheet(plans, materials[i], v.position, rate, {}, options.hold_spheres ? pinned[i] : std::nullopt);
     FlowSource& source = field.sources[i];
     source.position = v.position;
     source.velocity = v.velocity;
@@ -160,13 +167,15 @@ FlowSamples velocity_at(const FlowField& field, const Matrix& points) {
   constexpr int size = 64;
   const int blocks = (count + size - 1) / size;
   std::vector<PointBlock> all(blocks);
-  parallel_for(blocks, [&](int b) { all[b] = sorted(field, points.middleRows(b * size, std::min(count - b * size, size))); });
+  parallel_for(blocks,
+               [&](int b) { all[b] = sorted(field, points.middleRows(b * size, std::min(count - b * size, size))); });
   std::vector<TargetGroup> groups;
   std::vector<Exclusion> exclusions;
   for (int b = 0; b < blocks; ++b) {
     groups.push_back({all[b].points, -1});
     for (int j = 0; j < n; ++j)
-      if (std::vector<int> list = excluded(all[b].views[j]); !list.empty()) exclusions.push_back({b, j, std::move(list)});
+      if (std::vector<int> list = excluded(all[b].views[j]); !list.empty())
+        exclusions.push_back({b, j, std::move(list)});
   }
   FarField far = plan_far_field(field.coarse, std::move(groups));
   exclude(far, std::move(exclusions));

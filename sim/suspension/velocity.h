@@ -3,9 +3,9 @@
 // With the force densities f_j of all membranes on the fluid and their velocities u_j, from the representation formula:
 //   c u(x) = u_inf(x) + sum_j { S_j[f_j](x) + (1 - lambda_j) D_j[u_j](x) },   c = 1 outside, lambda_k inside vesicle k
 // (D with the sign of layer_potentials.h: its factor for a rigid motion is -1 inside, 0 outside, and this part of u_j
-// is exact). Both sides converge to the membrane's own velocity. Far from a membrane the smooth rule on a coarse grid is used
-// (far_field.h); nearer, in its place, the coarser of two finer grids that is fine enough, and within some spacings of the
-// finest the near-singular rule of near.h.
+// is exact). Both sides converge to the membrane's own velocity. Far from a membrane the smooth rule on a coarse grid
+// is used (far_field.h); nearer, in its place, the coarser of two finer grids that is fine enough, and within some
+// spacings of the finest the near-singular rule of near.h.
 #pragma once
 
 #include "sim/suspension/suspension.h"
@@ -29,8 +29,8 @@ struct FlowSource {
   Coefficients position, velocity;
   Densities densities;
   double viscosity_contrast = 1;
-  RigidMotion rigid;            ///< of the velocity
-  Matrix directions;  ///< parameters of the coarsest level's points, unit vectors
+  RigidMotion rigid;           ///< of the velocity
+  Matrix directions;           ///< parameters of the coarsest level's points, unit vectors
   std::array<Level, 2> finer;  ///< each spacing half of the one before, the first half of the coarse grid's
   const RotationPlan* rotation = nullptr;
 };

@@ -20,15 +20,18 @@ void start_hdf5() {
 
 std::string system_reason() {
   std::string reason;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {
-    constexpr std::string_view before = "error message = '";
-    const std::string_view words(error->desc ? error->desc : "");
-    if (const std::size_t at = words.find(before); at != std::string_view::npos) {
-      const std::string_view rest = words.substr(at + before.size());
-      *static_cast<std::string*>(text) = rest.substr(0, rest.find('\''));
-    }
-    return 0;
-  }, &reason);
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {
+        constexpr std::string_view before = "error message = '";
+        const std::string_view words(error->desc ? error->desc : "");
+        if (const std::size_t at = words.find(before); at != std::string_view::npos) {
+          const std::string_view rest = words.substr(at + before.size());
+          *static_cast<std::string*>(text) = rest.substr(0, rest.find('\''));
+        }
+        return 0;
+      },
+      &reason);
   H5Eclear2(H5E_DEFAULT);
   return reason;
 }
@@ -46,21 +49,22 @@ namespace {
 
 void write_attribute(hid_t object, const char* name, hid_t type, const void* value) {
   Making made;
-  const hid_t attribute = made(H5Acreate2(object, name, type, made(H5Screate(H5S_SCALAR), H5Sclose), H5P_DEFAULT, H5P_DEFAULT),
-                               H5Aclose);
+  const hid_t attribute =
+      made(H5Acreate2(object, name, type, made(H5Screate(H5S_SCALAR), H5Sclose), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   Making::check(H5Awrite(attribute, type, value));
   made.close();
 }
 
-/// The one way in which HDF5 copies anything out of a file: an attribute of one value. Type, extent and size are what the
-/// caller expects before a byte is copied. A type below 0 stands for a text of a fixed length.
+/// The one way in which HDF5 copies anything out of a file: an attribute of one value. Type, extent and size are what
+/// the caller expects before a byte is copied. A type below 0 stands for a text of a fixed length.
 std::string read_attribute(hid_t object, const char* name, hid_t expected, std::uint64_t largest) {
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, name);
   const Handle type(H5Aget_type(attribute), H5Tclose, name);
   const Handle space(H5Aget_space(attribute), H5Sclose, name);
   const std::uint64_t size = H5Tget_size(type);
-  if (H5Sget_simple_extent_type(space) != H5S_SCALAR || !(expected < 0 ? is_text(type) : H5Tequal(type, expected) > 0) ||
-      size == 0 || size > largest || H5Aget_storage_size(attribute) != size)
+  if (H5Sget_simple_extent_type(space) != H5S_SCALAR ||
+      !(expected < 0 ? is_text(type) : H5Tequal(type, expected) > 0) || size == 0 || size > largest ||
+      H5Aget_storage_size(attribute) != size)
     throw Refused(name);
   std::string bytes(size, '\0');
   if (H5Aread(attribute, type, bytes.data()) < 0) throw Refused(name);

@@ -1,5 +1,5 @@
-// What HDF5 is asked for, every answer checked: identifiers that close themselves, files in the making, attributes of one value.
-// Internal to the trajectory.
+// What HDF5 is asked for, every answer checked: identifiers that close themselves, files in the making, attributes of
+// one value. Internal to the trajectory.
 #pragma once
 
 #include <hdf5.h>
@@ -33,8 +33,9 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Identifiers of a file that is being made. Every call is checked, the closing ones too. Where one failed, nothing more is
-/// asked of HDF5 about that file, not even to close it: libhdf5 crashes over what a failed write has left half done.
+/// Identifiers of a file that is being made. Every call is checked, the closing ones too. Where one failed, nothing
+/// more is asked of HDF5 about that file, not even to close it: libhdf5 crashes over what a failed write has left half
+/// done.
 class Making {
  public:
   hid_t operator()(hid_t id, herr_t (*closer)(hid_t)) {
@@ -50,8 +51,8 @@ class Making {
   std::vector<std::pair<hid_t, herr_t (*)(hid_t)>> open_;
 };
 
-/// Before each use of HDF5. It says nothing by itself, loads no plugin that a file asks for, and leaves what is open alone
-/// when the program ends.
+/// Before each use of HDF5. It says nothing by itself, loads no plugin that a file asks for, and leaves what is open
+/// alone when the program ends.
 void start_hdf5();
 
 /// What the system said to HDF5 when it failed, "No space left on device"; empty: nothing.

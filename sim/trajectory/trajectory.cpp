@@ -20,8 +20,8 @@ constexpr std::chrono::milliseconds unsynced_interval{50};
 
 std::uint64_t bits(std::int64_t n) { return static_cast<std::uint64_t>(n); }
 
-/// Number of the last resume record of a run that ends after so many steps; odd. A step renews the record at most once, so
-/// that this number and the one before it are above all earlier ones.
+/// Number of the last resume record of a run that ends after so many steps; odd. A step renews the record at most once,
+/// so that this number and the one before it are above all earlier ones.
 std::uint64_t last_sequence(std::int64_t step) { return 4 * (bits(step) + 1) + 1; }
 
 /// An open file and what HDF5 said about it: the half that reader and writer share.
@@ -87,7 +87,8 @@ struct OpenFile {
     const std::uint64_t count = word(counter), rows = map.at(checksums).rows;
     const auto written = [&](std::uint64_t row) { return word(checksums, row) >> 32 == 1; };
     // One row more than counted may be complete: a writer was stopped just before it counted it.
-    const bool plausible = count <= rows && (count == 0 || written(count - 1)) && (count + 1 >= rows || !written(count + 1));
+    const bool plausible =
+        count <= rows && (count == 0 || written(count - 1)) && (count + 1 >= rows || !written(count + 1));
     if (plausible) return static_cast<std::int64_t>(count);
     std::uint64_t prefix = 0;
     while (prefix < rows && written(prefix)) ++prefix;
@@ -116,9 +117,7 @@ struct OpenFile {
       damaged("step record", k, "its number or time is impossible");
     return record;
   }
-  bool intact_state(std::int64_t k) const {
-    return intact("checksum", bits(k), read_row(state_places, bits(k)));
-  }
+  bool intact_state(std::int64_t k) const { return intact("checksum", bits(k), read_row(state_places, bits(k))); }
   /// Whole states come one after the other in time; a damaged one is told when it is read.
   void check_order(std::int64_t first, std::int64_t count) const {
     first = std::max<std::int64_t>(first, 1);
@@ -127,7 +126,8 @@ struct OpenFile {
     descriptor.read(map.at("time").offset + 8 * bits(first - 1), times.data(), 8 * times.size());
     for (std::int64_t k = first; k < count; ++k) {
       const auto i = static_cast<std::size_t>(k - first + 1);
-      if (!(times[i] > times[i - 1]) && intact_state(k - 1) && intact_state(k)) damaged("state", k, "its time is not later");
+      if (!(times[i] > times[i - 1]) && intact_state(k - 1) && intact_state(k))
+        damaged("state", k, "its time is not later");
     }
   }
 
@@ -178,13 +178,13 @@ struct OpenFile {
 bool holds_trajectory(const std::filesystem::path& path) { return file::holds_mark(path); }
 
 struct TrajectoryWriter::Impl {
-  std::optional<file::Lock> lock;      ///< none before the file has its name: then its draft is locked
+  std::optional<file::Lock> lock;  ///< none before the file has its name: then its draft is locked
   OpenFile file;
   std::int64_t states = 0, steps = 0;  ///< committed
   std::int64_t last_state_step = -1;
   double last_time = 0;
-  double last_step = 0;                ///< of the last record
-  std::uint64_t sequence = 0;          ///< of the last resume payload
+  double last_step = 0;        ///< of the last record
+  std::uint64_t sequence = 0;  ///< of the last resume payload
   std::chrono::steady_clock::time_point last_append = std::chrono::steady_clock::now();
 
   explicit Impl(OpenFile f) : file(std::move(f)) {}
@@ -193,7 +193,8 @@ struct TrajectoryWriter::Impl {
   void grow(std::int64_t state_rows, std::int64_t step_rows, std::int64_t resume_numbers) {
     rewrite(file.map.header, state_rows, step_rows, resume_numbers);
   }
-  void rewrite(const TrajectoryHeader& header, std::int64_t state_rows, std::int64_t step_rows, std::int64_t resume_numbers) {
+  void rewrite(const TrajectoryHeader& header, std::int64_t state_rows, std::int64_t step_rows,
+               std::int64_t resume_numbers) {
     TrajectoryLayout layout = file.map.layout;
     layout.states = std::max(layout.states, state_rows);
     layout.steps = std::max(layout.steps, step_rows);
@@ -321,8 +322,8 @@ TrajectoryWriter TrajectoryWriter::resume(const std::filesystem::path& name) {
   if (impl->steps > 0) impl->last_step = impl->file.step(impl->steps - 1).step;
   impl->sequence = impl->file.newest_slot().sequence;
   if (impl->sequence == 0)
-    throw std::runtime_error(fmt::format("trajectory '{}' cannot be resumed: both resume records are damaged",
-                                         path.string()));
+    throw std::runtime_error(
+        fmt::format("trajectory '{}' cannot be resumed: both resume records are damaged", path.string()));
   return TrajectoryWriter(std::move(impl));
 }
 
@@ -378,8 +379,8 @@ struct TrajectoryReader::Impl {
   }
   void check(std::int64_t k) const {
     if (k < 0 || k >= states)
-      throw std::runtime_error(fmt::format("trajectory '{}' has states 0 to {}, not {}", file.path.string(), states - 1,
-                                           k));
+      throw std::runtime_error(
+          fmt::format("trajectory '{}' has states 0 to {}, not {}", file.path.string(), states - 1, k));
   }
 };
 
@@ -395,8 +396,10 @@ std::int64_t TrajectoryReader::count() const { return impl_->states; }
 std::int64_t TrajectoryReader::refresh() {
   const std::filesystem::path path = impl_->file.path;
   // A file that grew has been replaced by a larger one.
-  if (file::Descriptor(path, false).inode() != impl_->file.descriptor.inode()) *impl_ = Impl(path);
-  else impl_->look();
+  if (file::Descriptor(path, false).inode() != impl_->file.descriptor.inode())
+    *impl_ = Impl(path);
+  else
+    impl_->look();
   return impl_->states;
 }
 

@@ -28,12 +28,12 @@ inline constexpr int largest_order = 128;
 /// Sizes that are fixed for one file. States, steps and resume grow by themselves when they are exceeded.
 struct TrajectoryLayout {
   int vesicles = 1;
-  int order = 8;              ///< highest p that any vesicle may reach
-  int label_order = 24;       ///< likewise of the labels
-  int tracers = 14;           ///< dots of each vesicle
-  std::int64_t states = 1;    ///< rows for saved states, state 0 included
-  std::int64_t steps = 1;     ///< rows for step records
-  std::int64_t resume = 1;    ///< numbers in a resume payload
+  int order = 8;            ///< highest p that any vesicle may reach
+  int label_order = 24;     ///< likewise of the labels
+  int tracers = 14;         ///< dots of each vesicle
+  std::int64_t states = 1;  ///< rows for saved states, state 0 included
+  std::int64_t steps = 1;   ///< rows for step records
+  std::int64_t resume = 1;  ///< numbers in a resume payload
 };
 
 /// Metadata of a file, fixed at creation.
@@ -57,7 +57,7 @@ struct StepRecord {
 
 /// The columns of the step records, declared once: v(name, meaning, double&).
 template <class R, class V>
-  requires std::same_as<std::remove_const_t<R>, StepRecord>
+requires std::same_as<std::remove_const_t<R>, StepRecord>
 void visit(R& r, V&& v) {
   v("step", "number of the step, from 1", r.step);
   v("time", "at the end of the step", r.time);
@@ -69,7 +69,7 @@ void visit(R& r, V&& v) {
 }
 /// ... and of each vesicle.
 template <class R, class V>
-  requires std::same_as<std::remove_const_t<R>, VesicleStep>
+requires std::same_as<std::remove_const_t<R>, VesicleStep>
 void visit(R& r, V&& v) {
   v("area_error", "A / A0 - 1", r.area_error);
   v("volume_error", "V / V0 - 1", r.volume_error);
@@ -144,8 +144,8 @@ class TrajectoryReader {
 
   const TrajectoryHeader& header() const;
   const TrajectoryLayout& layout() const;
-  std::int64_t count() const;     ///< states at the last refresh()
-  std::int64_t refresh();         ///< reads the counter again and returns count()
+  std::int64_t count() const;         ///< states at the last refresh()
+  std::int64_t refresh();             ///< reads the counter again and returns count()
   State state(std::int64_t k) const;  ///< 0 <= k < count(); a damaged row is an error that names it
   double time(std::int64_t k) const;  ///< of that state, cheaply
   std::vector<StepRecord> steps() const;

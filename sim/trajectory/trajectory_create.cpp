@@ -23,8 +23,9 @@ Wide total_bytes(const std::vector<Dataset>& all) {
 }
 
 void check_space(const std::filesystem::path& path, Wide bytes) {
-  if (bytes >> 62) throw std::runtime_error(fmt::format("trajectory '{}' would be too large for any disk", path.string()));
-  struct statvfs disk{};
+  if (bytes >> 62)
+    throw std::runtime_error(fmt::format("trajectory '{}' would be too large for any disk", path.string()));
+  struct statvfs disk {};
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (statvfs(folder.c_str(), &disk) != 0) return;
   const double needed = static_cast<double>(bytes);
@@ -35,8 +36,8 @@ void check_space(const std::filesystem::path& path, Wide bytes) {
 }
 
 /// The file as HDF5 makes it, with all datasets allocated and nothing in them but the scene.
-void create_with_hdf5(const std::filesystem::path& draft, const std::vector<Dataset>& all, const TrajectoryLayout& layout,
-                      const TrajectoryHeader& header) {
+void create_with_hdf5(const std::filesystem::path& draft, const std::vector<Dataset>& all,
+                      const TrajectoryLayout& layout, const TrajectoryHeader& header) {
   start_hdf5();
   try {
     Making made;
@@ -57,7 +58,8 @@ void create_with_hdf5(const std::filesystem::path& draft, const std::vector<Data
     std::string warnings;
     for (const std::string& w : header.warnings) warnings += (warnings.empty() ? "" : "\n") + w;
     write_text(h5, "warnings", warnings);
-    visit_layout(layout, [&](const char* name, auto value, std::int64_t, std::int64_t) { write_number(h5, name, value); });
+    visit_layout(layout,
+                 [&](const char* name, auto value, std::int64_t, std::int64_t) { write_number(h5, name, value); });
     write_number(h5, "scene_checksum", static_cast<std::int64_t>(scene_checksum(header.scene)));
 
     Making group;
@@ -72,7 +74,9 @@ void create_with_hdf5(const std::filesystem::path& draft, const std::vector<Data
       Making::check(H5Pset_fill_time(plan, H5D_FILL_TIME_NEVER));
       Making::check(H5Pset_obj_track_times(plan, false));
       const hid_t type = part(d.kind == Kind::text   ? text_type(d.text_bytes)
-                              : d.kind == Kind::real ? H5Tcopy(H5T_IEEE_F64LE) : H5Tcopy(H5T_STD_U64LE), H5Tclose);
+                              : d.kind == Kind::real ? H5Tcopy(H5T_IEEE_F64LE)
+                                                     : H5Tcopy(H5T_STD_U64LE),
+                              H5Tclose);
       const std::vector<hsize_t> shape(d.shape.begin(), d.shape.end());
       const hid_t space = part(shape.empty() ? H5Screate(H5S_SCALAR)
                                              : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
@@ -92,10 +96,10 @@ void create_with_hdf5(const std::filesystem::path& draft, const std::vector<Data
   }
 }
 
-/// Makes sure that what HDF5 will write can be written, before there is anything to be undone. Throws std::system_error.
+/// Makes sure that what HDF5 will write can be written, before there is anything to be undone. Throws
+/// std::system_error.
 void try_to_write(int file, std::uint64_t file_bytes, std::uint64_t first_bytes) {
-  if (::ftruncate(file, static_cast<off_t>(file_bytes)) != 0)
-    throw std::system_error(errno, std::generic_category());
+  if (::ftruncate(file, static_cast<off_t>(file_bytes)) != 0) throw std::system_error(errno, std::generic_category());
   const std::vector<char> zeros(65536);
   for (std::uint64_t at = 0; at < first_bytes; at += zeros.size())
     if (const ssize_t done = ::pwrite(file, zeros.data(), zeros.size(), static_cast<off_t>(at));
@@ -111,10 +115,12 @@ void create(const Draft& draft, const std::filesystem::path& path, const Traject
   const Wide bytes = total_bytes(all);
   check_space(path, bytes);
   try {
-    try_to_write(draft.descriptor(), static_cast<std::uint64_t>(bytes) + metadata_bytes, metadata_bytes + header.scene.size());
+    try_to_write(draft.descriptor(), static_cast<std::uint64_t>(bytes) + metadata_bytes,
+                 metadata_bytes + header.scene.size());
     create_with_hdf5(draft.path(), all, layout, header);
   } catch (const std::system_error& error) {
-    throw std::runtime_error(fmt::format("cannot create trajectory '{}': {}", path.string(), std::strerror(error.code().value())));
+    throw std::runtime_error(
+        fmt::format("cannot create trajectory '{}': {}", path.string(), std::strerror(error.code().value())));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("cannot create trajectory '{}': {}", path.string(), error.what()));
   }

@@ -21,8 +21,8 @@ enum class Kind { real, integer, text };
 struct Dataset {
   std::string name, meaning;
   Kind kind = Kind::real;
-  std::vector<std::uint64_t> shape;     ///< rows first; empty: one number
-  std::uint64_t text_bytes = 0;   ///< of one string
+  std::vector<std::uint64_t> shape;  ///< rows first; empty: one number
+  std::uint64_t text_bytes = 0;      ///< of one string
 
   std::uint64_t rows() const { return shape.empty() ? 1 : shape.front(); }
   std::uint64_t row_bytes() const {

@@ -26,7 +26,7 @@ namespace {
 
 Descriptor::Descriptor(const std::filesystem::path& path, bool writable) : path_(path) {
   const char* what = writable ? "write trajectory" : "read trajectory";
-  struct stat status{};
+  struct stat status {};
   // Before it is opened, and again of what was opened.
   if (::stat(path.c_str(), &status) != 0) fail(what, path, errno);
   if (S_ISREG(status.st_mode)) {
@@ -44,7 +44,9 @@ Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
   std::swap(fd_, other.fd_);
   return *this;
 }
-Descriptor::~Descriptor() { if (fd_ >= 0) ::close(fd_); }
+Descriptor::~Descriptor() {
+  if (fd_ >= 0) ::close(fd_);
+}
 
 void Descriptor::write(std::uint64_t offset, const void* bytes, std::uint64_t size) const {
   const auto* from = static_cast<const char*>(bytes);
@@ -76,18 +78,19 @@ void Descriptor::sync(bool data_only) const {
 }
 
 std::uint64_t Descriptor::inode() const {
-  struct stat status{};
+  struct stat status {};
   return ::fstat(fd_, &status) == 0 ? status.st_ino : 0;
 }
 
 std::uint64_t Descriptor::size() const {
-  struct stat status{};
+  struct stat status {};
   if (::fstat(fd_, &status) != 0) fail("read trajectory", path_, errno);
   return static_cast<std::uint64_t>(status.st_size);
 }
 
 bool Descriptor::same_file(int descriptor) const {
-  struct stat own{}, other{};
+  struct stat own {
+  }, other{};
   return ::fstat(fd_, &own) == 0 && ::fstat(descriptor, &other) == 0 && own.st_dev == other.st_dev &&
          own.st_ino == other.st_ino;
 }
@@ -101,7 +104,8 @@ Lock::Lock(const std::filesystem::path& path) {
       throw std::runtime_error(fmt::format("another process is writing '{}'", path.string()));
     }
     // The holder before us may have put a larger file in its place between our open and our lock.
-    struct stat ours{}, named{};
+    struct stat ours {
+    }, named{};
     if (::fstat(fd_, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino &&
         ours.st_dev == named.st_dev)
       return;
@@ -113,17 +117,19 @@ Lock& Lock::operator=(Lock&& other) noexcept {
   std::swap(fd_, other.fd_);
   return *this;
 }
-Lock::~Lock() { if (fd_ >= 0) ::close(fd_); }
+Lock::~Lock() {
+  if (fd_ >= 0) ::close(fd_);
+}
 
 void require_ours(const std::filesystem::path& path) {
-  struct stat status{};
+  struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return;
   if (!S_ISREG(status.st_mode))
     throw std::runtime_error(fmt::format("'{}' is not a file; a trajectory cannot take its place", path.string()));
   if (status.st_size == 0) return;
   if (!holds_mark(path))
-    throw std::runtime_error(fmt::format("'{}' is not a trajectory of this program and is left as it is; give another name",
-                                         path.string()));
+    throw std::runtime_error(
+        fmt::format("'{}' is not a trajectory of this program and is left as it is; give another name", path.string()));
 }
 
 bool holds_mark(const std::filesystem::path& path) {

@@ -35,7 +35,8 @@ Handle open_dataset(hid_t h5, const std::string& name) {
 }
 
 /// Where a dataset lies, when its type, extent and size are the expected ones and it lies within the file. A text of 0
-/// bytes stands for one of any length. The layout comes first: asked for the extent of a virtual dataset, HDF5 opens others.
+/// bytes stands for one of any length. The layout comes first: asked for the extent of a virtual dataset, HDF5 opens
+/// others.
 Place place_of(hid_t h5, const Dataset& expected, std::uint64_t file_bytes) {
   const char* name = expected.name.c_str();
   const Handle dataset = open_dataset(h5, expected.name);
@@ -48,7 +49,8 @@ Place place_of(hid_t h5, const Dataset& expected, std::uint64_t file_bytes) {
   const Handle space(H5Dget_space(dataset), H5Sclose, name);
   std::vector<hsize_t> shape(static_cast<std::size_t>(std::clamp(H5Sget_simple_extent_ndims(space), 0, H5S_MAX_RANK)));
   if (H5Sget_simple_extent_type(space) != (expected.shape.empty() ? H5S_SCALAR : H5S_SIMPLE) ||
-      H5Sget_simple_extent_dims(space, shape.data(), nullptr) < 0 || !std::equal(shape.begin(), shape.end(), expected.shape.begin(), expected.shape.end()))
+      H5Sget_simple_extent_dims(space, shape.data(), nullptr) < 0 ||
+      !std::equal(shape.begin(), shape.end(), expected.shape.begin(), expected.shape.end()))
     throw Refused(name);
   Dataset there = expected;
   if (text) {
@@ -101,8 +103,8 @@ Map read_map(const Descriptor& file, hid_t h5, std::uint64_t file_bytes) {
   file.read(place.offset, map.header.scene.data(), place.row_bytes);
   if (map.header.scene == std::string(1, '\0')) map.header.scene.clear();
   if (static_cast<std::int64_t>(scene_checksum(map.header.scene)) != read_number(h5, "scene_checksum"))
-    throw std::runtime_error(fmt::format("trajectory '{}' is damaged: its scene does not fit its checksum",
-                                         file.path().string()));
+    throw std::runtime_error(
+        fmt::format("trajectory '{}' is damaged: its scene does not fit its checksum", file.path().string()));
   return map;
 }
 
@@ -145,11 +147,12 @@ std::optional<Map> map(const Descriptor& file) {
     if (H5Aexists(h5, "content") <= 0 || H5Aexists(h5, "format") <= 0 || read_text(h5, "content", size) != content)
       throw std::runtime_error(fmt::format("'{}' is an HDF5 file but not a Tanktread trajectory", path));
     if (const std::int64_t format = read_number(h5, "format"); format != trajectory_format)
-      throw std::runtime_error(fmt::format("trajectory '{}' has format {}; this program reads format {}", path, format,
-                                           trajectory_format));
+      throw std::runtime_error(
+          fmt::format("trajectory '{}' has format {}; this program reads format {}", path, format, trajectory_format));
     return read_map(file, h5, size);
   } catch (const Refused& refused) {
-    throw std::runtime_error(fmt::format("trajectory '{}' is damaged: {} is not what it must be", path, refused.what()));
+    throw std::runtime_error(
+        fmt::format("trajectory '{}' is damaged: {} is not what it must be", path, refused.what()));
   }
 }
 

@@ -35,10 +35,12 @@ struct Describe {
   std::vector<Column> columns = {};
 
   std::uint64_t vesicles() const { return static_cast<std::uint64_t>(layout.vesicles); }
-  template <class T> void integer(const char* name, const char* meaning, std::int64_t T::*) {
+  template <class T>
+  void integer(const char* name, const char* meaning, std::int64_t T::*) {
     columns.push_back({name, meaning, true, shape<T>()});
   }
-  template <class T> void real(const char* name, const char* meaning, double T::*) {
+  template <class T>
+  void real(const char* name, const char* meaning, double T::*) {
     columns.push_back({name, meaning, false, shape<T>()});
   }
   void order(const char* name, const char* meaning, Coefficients VesicleState::*) {
@@ -51,9 +53,12 @@ struct Describe {
     const auto rows = static_cast<std::uint64_t>(coefficient_count(label ? layout.label_order : layout.order));
     columns.push_back({name, meaning, false, {vesicles(), fields, rows}});
   }
-  template <class T> std::vector<std::uint64_t> shape() const {
-    if constexpr (std::is_same_v<T, State>) return {};
-    else return {vesicles()};
+  template <class T>
+  std::vector<std::uint64_t> shape() const {
+    if constexpr (std::is_same_v<T, State>)
+      return {};
+    else
+      return {vesicles()};
   }
 };
 
@@ -64,12 +69,21 @@ struct Pack {
 
   void put(std::int64_t value) { words.push_back(static_cast<std::uint64_t>(value)); }
   void put(double value) { words.push_back(std::bit_cast<std::uint64_t>(value)); }
-  template <class T, class M> void each(M T::*member) {
-    if constexpr (std::is_same_v<T, State>) put(state.*member);
-    else for (const VesicleState& v : state.vesicles) put(v.*member);
+  template <class T, class M>
+  void each(M T::*member) {
+    if constexpr (std::is_same_v<T, State>)
+      put(state.*member);
+    else
+      for (const VesicleState& v : state.vesicles) put(v.*member);
   }
-  template <class T> void integer(const char*, const char*, std::int64_t T::*member) { each(member); }
-  template <class T> void real(const char*, const char*, double T::*member) { each(member); }
+  template <class T>
+  void integer(const char*, const char*, std::int64_t T::*member) {
+    each(member);
+  }
+  template <class T>
+  void real(const char*, const char*, double T::*member) {
+    each(member);
+  }
   void order(const char*, const char*, Coefficients VesicleState::*member) {
     for (const VesicleState& v : state.vesicles) put(static_cast<std::int64_t>((v.*member).order));
   }
@@ -77,8 +91,8 @@ struct Pack {
     for (const VesicleState& v : state.vesicles) {
       const Matrix& m = v.*member;
       if (m.rows() != layout.tracers || m.cols() != 3)
-        throw std::runtime_error(fmt::format("a state has {} x {} {}, the trajectory {} x 3", m.rows(), m.cols(), name,
-                                             layout.tracers));
+        throw std::runtime_error(
+            fmt::format("a state has {} x {} {}, the trajectory {} x 3", m.rows(), m.cols(), name, layout.tracers));
       for (Eigen::Index i = 0; i < m.rows(); ++i)
         for (Eigen::Index j = 0; j < 3; ++j) put(m(i, j));
     }
@@ -88,10 +102,12 @@ struct Pack {
     for (const VesicleState& v : state.vesicles) {
       const Coefficients& c = v.*member;
       const int order = label ? v.labels.order : v.position.order;
-      if (c.order != order || order > capacity || c.values.cols() != fields || c.values.rows() != coefficient_count(order))
-        throw std::runtime_error(fmt::format("the {} of a state are of order {} with {} x {} numbers; the trajectory has "
-                                             "room for order {} with {} fields", name, c.order, c.values.rows(),
-                                             c.values.cols(), capacity, fields));
+      if (c.order != order || order > capacity || c.values.cols() != fields ||
+          c.values.rows() != coefficient_count(order))
+        throw std::runtime_error(
+            fmt::format("the {} of a state are of order {} with {} x {} numbers; the trajectory has "
+                        "room for order {} with {} fields",
+                        name, c.order, c.values.rows(), c.values.cols(), capacity, fields));
       for (Eigen::Index f = 0; f < fields; ++f) {
         for (Eigen::Index i = 0; i < c.values.rows(); ++i) put(c.values(i, f));
         words.resize(words.size() + static_cast<std::size_t>(coefficient_count(capacity) - c.values.rows()), 0);
@@ -110,9 +126,12 @@ struct Unpack {
 
   void get(std::int64_t& value) { value = static_cast<std::int64_t>(words.at(next++)); }
   void get(double& value) { value = std::bit_cast<double>(words.at(next++)); }
-  template <class T, class M> void each(M T::*member) {
-    if constexpr (std::is_same_v<T, State>) get(state.*member);
-    else for (VesicleState& v : state.vesicles) get(v.*member);
+  template <class T, class M>
+  void each(M T::*member) {
+    if constexpr (std::is_same_v<T, State>)
+      get(state.*member);
+    else
+      for (VesicleState& v : state.vesicles) get(v.*member);
   }
   void require(bool fits, const char* name, const auto& value) const {
     if (!fits) throw Unfit(fmt::format("{} is {}", name, value));
@@ -122,17 +141,23 @@ struct Unpack {
     require(std::abs(value) <= largest_number, name, value);
   }
   /// Counts and times are never negative.
-  template <class T> void integer(const char* name, const char*, std::int64_t T::*member) {
+  template <class T>
+  void integer(const char* name, const char*, std::int64_t T::*member) {
     each(member);
     const auto check = [&](const T& t) { require(t.*member >= 0, name, t.*member); };
-    if constexpr (std::is_same_v<T, State>) check(state);
-    else for (const VesicleState& v : state.vesicles) check(v);
+    if constexpr (std::is_same_v<T, State>)
+      check(state);
+    else
+      for (const VesicleState& v : state.vesicles) check(v);
   }
-  template <class T> void real(const char* name, const char*, double T::*member) {
+  template <class T>
+  void real(const char* name, const char*, double T::*member) {
     each(member);
     const auto check = [&](const T& t) { require(t.*member >= 0 && t.*member <= largest_number, name, t.*member); };
-    if constexpr (std::is_same_v<T, State>) check(state);
-    else for (const VesicleState& v : state.vesicles) check(v);
+    if constexpr (std::is_same_v<T, State>)
+      check(state);
+    else
+      for (const VesicleState& v : state.vesicles) check(v);
   }
   void order(const char* name, const char*, Coefficients VesicleState::*member) {
     const int largest = member == &VesicleState::labels ? layout.label_order : layout.order;
@@ -181,8 +206,8 @@ std::vector<Column> state_columns(const TrajectoryLayout& layout) {
 
 Words pack(const State& state, const TrajectoryLayout& layout) {
   if (static_cast<int>(state.vesicles.size()) != layout.vesicles)
-    throw std::runtime_error(fmt::format("a state has {} vesicles, the trajectory {}", state.vesicles.size(),
-                                         layout.vesicles));
+    throw std::runtime_error(
+        fmt::format("a state has {} vesicles, the trajectory {}", state.vesicles.size(), layout.vesicles));
   Pack archive{state, layout};
   walk_state(archive);
   return std::move(archive.words);
@@ -211,8 +236,8 @@ std::vector<Column> step_columns(const TrajectoryLayout& layout) {
 
 Words pack(const StepRecord& record, const TrajectoryLayout& layout) {
   if (static_cast<int>(record.vesicles.size()) != layout.vesicles)
-    throw std::runtime_error(fmt::format("a step record has {} vesicles, the trajectory {}", record.vesicles.size(),
-                                         layout.vesicles));
+    throw std::runtime_error(
+        fmt::format("a step record has {} vesicles, the trajectory {}", record.vesicles.size(), layout.vesicles));
   Words words;
   visit(record, [&](const char*, const char*, double value) { words.push_back(std::bit_cast<std::uint64_t>(value)); });
   const std::size_t vesicles = record.vesicles.size();

@@ -36,7 +36,8 @@ void check_same_states(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-TEST_CASE("run leaves trajectory, frames, movie and resolved scene, and a second run does nothing again", "[commands]") {
+TEST_CASE("run leaves trajectory, frames, movie and resolved scene, and a second run does nothing again",
+          "[commands]") {
   const Desk desk;
   const Outcome first = desk({"run", desk.file("s.toml"), "-o", desk.file("out")});
   INFO(first.err);
@@ -71,7 +72,9 @@ TEST_CASE("an output folder of another scene is refused without --force", "[comm
   const Outcome other = desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "--set", "vesicle.order=5"});
   CHECK(other.status == 1);
   CHECK_THAT(other.err, Contains("belongs to another scene") && Contains("--force"));
-  CHECK(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "--steps", "1", "--set", "vesicle.order=5", "--force"}).status == 0);
+  CHECK(
+      desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "--steps", "1", "--set", "vesicle.order=5", "--force"})
+          .status == 0);
 }
 
 TEST_CASE("run does not overwrite the scene that it was given", "[commands]") {
@@ -85,8 +88,9 @@ TEST_CASE("run does not overwrite the scene that it was given", "[commands]") {
 
 TEST_CASE("wrong scenes end with one sentence, status 1 and nothing written", "[commands]") {
   const Desk desk;
-  for (const char* change : {"vesicle.oder=3", "vesicle.viscosity_contrast=-1", "vesicle.order=1", "vesicle.reduced_volume=1.5",
-                             "time.tolerance=1e-4", "flow.curvature=1", "view.size=[0, 10]", "view.size=[10]"}) {
+  for (const char* change :
+       {"vesicle.oder=3", "vesicle.viscosity_contrast=-1", "vesicle.order=1", "vesicle.reduced_volume=1.5",
+        "time.tolerance=1e-4", "flow.curvature=1", "view.size=[0, 10]", "view.size=[10]"}) {
     for (const char* command : {"run", "simulate"}) {
       const Outcome outcome = desk({command, desk.file("s.toml"), "-o", desk.file("x"), "--set", change});
       INFO(command << ' ' << change << ": " << outcome.err);
@@ -114,10 +118,11 @@ TEST_CASE("errors in a scene file name file, line and column", "[commands]") {
 TEST_CASE("unreadable trajectories end with one sentence and status 1", "[commands]") {
   const Desk desk;
   support::write_file(desk / "t.h5", "nonsense");
-  const std::vector<std::vector<std::string>> commands{{"render", desk.file("t.h5"), "-o", desk.file("x")},
-                                                       {"export", desk.file("t.h5"), "--csv", desk.file("x")},
-                                                       {"figure", "overlay", desk.file("t.h5"), "-o", desk.file("x")},
-                                                       {"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--resume"}};
+  const std::vector<std::vector<std::string>> commands{
+      {"render", desk.file("t.h5"), "-o", desk.file("x")},
+      {"export", desk.file("t.h5"), "--csv", desk.file("x")},
+      {"figure", "overlay", desk.file("t.h5"), "-o", desk.file("x")},
+      {"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--resume"}};
   for (const auto& words : commands) {
     const Outcome outcome = desk(words);
     INFO(words[0] << ": " << outcome.err);
@@ -171,13 +176,14 @@ TEST_CASE("a continued simulation saves at the multiples of save_every that it i
   const Desk desk;
   const std::string file = desk.file("t.h5");
   const auto simulate = [&](const char* end, const char* every) {
-    const Outcome outcome = desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "-q", "--set", "vesicle.order=4",
-                                  "--set", std::string("time.end=") + end, "--set", std::string("time.save_every=") + every});
+    const Outcome outcome =
+        desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "-q", "--set", "vesicle.order=4", "--set",
+              std::string("time.end=") + end, "--set", std::string("time.save_every=") + every});
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
   };
   simulate("0.5", "0.2");
-  simulate("0.9", "0.2");   // 0.5 was the end, no multiple
+  simulate("0.9", "0.2");  // 0.5 was the end, no multiple
   simulate("1.5", "0.3");
   const sim::TrajectoryReader reader(file);
   const double times[] = {0, 0.2, 0.4, 0.5, 0.6, 0.8, 0.9, 1.2, 1.5};
@@ -214,18 +220,24 @@ TEST_CASE("a scene that is another one is told by the keys that differ, with bot
   const Outcome other = desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "--set", "flow.rate=2", "--set",
                               "time.end=7", "--set", "numerics.label_order=30"});
   CHECK(other.status == 1);
-  CHECK_THAT(other.err, Contains("belongs to another scene: flow.rate is 1.0 there and 2.0 here, time.end is 0.5 there and 7.0 here, "
-                                 "numerics.label_order is \"auto\" there and 30 here; give another -o, or --force"));
-  const Outcome more = desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "--set",
-                             "vesicle=[{shape=\"sphere\", order=6}, {shape=\"sphere\", center=[3.0, 0.0, 0.0], order=6}]"});
+  CHECK_THAT(
+      other.err,
+      Contains("belongs to another scene: flow.rate is 1.0 there and 2.0 here, time.end is 0.5 there and 7.0 here, "
+               "numerics.label_order is \"auto\" there and 30 here; give another -o, or --force"));
+  const Outcome more =
+      desk({"simulate", desk.file("s.toml"), "-o", file, "--resume", "--set",
+            "vesicle=[{shape=\"sphere\", order=6}, {shape=\"sphere\", center=[3.0, 0.0, 0.0], order=6}]"});
   CHECK(more.status == 1);
   CHECK_THAT(more.err, Contains("vesicle.0.shape is \"prolate\" there and \"sphere\" here") && Contains("more keys"));
 }
 
 TEST_CASE("a warning that was given is not given again after a resume: the bytes stay the same", "[commands]") {
-  const Desk desk("[flow]\nkind = \"none\"\n[time]\nend = 0.2\n[[vesicle]]\nshape = \"prolate\"\nreduced_volume = 0.85\norder = 6\n");
+  const Desk desk(
+      "[flow]\nkind = \"none\"\n[time]\nend = 0.2\n[[vesicle]]\nshape = \"prolate\"\nreduced_volume = 0.85\norder = "
+      "6\n");
   const auto simulate = [&](const char* name, std::vector<std::string> more) {
-    std::vector<std::string> words{"simulate", desk.file("s.toml"), "-o", desk.file(name), "-q", "--resume", "--set", "numerics.tail_warning=0.01"};
+    std::vector<std::string> words{"simulate", desk.file("s.toml"), "-o",    desk.file(name),
+                                   "-q",       "--resume",          "--set", "numerics.tail_warning=0.01"};
     words.insert(words.end(), more.begin(), more.end());
     REQUIRE(desk(words).status == 0);
   };
@@ -284,7 +296,8 @@ TEST_CASE("Ctrl-C finishes the step, saves, and ends with status 130", "[command
 
 TEST_CASE("a dry run prints a scene and writes nothing", "[commands]") {
   const Desk desk;
-  const Outcome outcome = desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "--dry-run", "--set", "time.end=3"});
+  const Outcome outcome =
+      desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "--dry-run", "--set", "time.end=3"});
   CHECK(outcome.status == 0);
   CHECK_THAT(outcome.out, Contains("end = 3.0") && Contains("viscosity_contrast = 1.0"));
   CHECK(desk.names().empty());
@@ -295,9 +308,10 @@ TEST_CASE("export writes one row per saved state and vesicle under the promised 
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
   const Outcome outcome = desk({"export", desk.file("t.h5"), "--csv", "-"});
   REQUIRE(outcome.status == 0);
-  CHECK(outcome.out.substr(0, outcome.out.find('\n')) ==
-        "step,time,vesicle,area,volume,area_error,volume_error,reduced_volume,center_x,center_y,center_z,inclination_deg,"
-        "axis_1,axis_2,axis_3,energy,velocity_l2,normal_velocity_l2,tension_mean,tension_min,tension_max");
+  CHECK(
+      outcome.out.substr(0, outcome.out.find('\n')) ==
+      "step,time,vesicle,area,volume,area_error,volume_error,reduced_volume,center_x,center_y,center_z,inclination_deg,"
+      "axis_1,axis_2,axis_3,energy,velocity_l2,normal_velocity_l2,tension_mean,tension_min,tension_max");
   CHECK(std::count(outcome.out.begin(), outcome.out.end(), '\n') == 7);
   CHECK(desk({"export", desk.file("t.h5"), "--csv", desk.file("t.csv")}).status == 0);
   CHECK(support::read_file(desk / "t.csv") == outcome.out);
@@ -335,7 +349,8 @@ TEST_CASE("info, list, --version and mistakes on the command line answer", "[com
 
 TEST_CASE("a shard or a size of half a number, or of one beyond all bounds, is refused", "[commands]") {
   const Desk desk;
-  for (const std::string text : {"0/", "/3", "99999999999/4", "0/99999999999", "4/4", "-1/4", "1/2/3", " 0/2", "0/2 ", "", "/"}) {
+  for (const std::string text :
+       {"0/", "/3", "99999999999/4", "0/99999999999", "4/4", "-1/4", "1/2/3", " 0/2", "0/2 ", "", "/"}) {
     const Outcome o = desk({"render", desk.file("none.h5"), "--shard", text});
     INFO(text << ": " << o.err);
     CHECK(o.status != 0);
@@ -350,7 +365,8 @@ TEST_CASE("a shard or a size of half a number, or of one beyond all bounds, is r
   }
 }
 
-TEST_CASE("export writes the state nearest to a time, and refuses times that the trajectory does not reach", "[commands]") {
+TEST_CASE("export writes the state nearest to a time, and refuses times that the trajectory does not reach",
+          "[commands]") {
   const Desk desk;
   const std::string file = desk.file("t.h5");
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", file, "-q"}).status == 0);
@@ -361,7 +377,8 @@ TEST_CASE("export writes the state nearest to a time, and refuses times that the
   CHECK(one.substr(0, header.size()) == header);
   CHECK_THAT(one, Contains("\n3,0.3"));
   CHECK_THAT(all, Contains(one.substr(header.size())));  // the very row of the whole table
-  REQUIRE(desk({"export", file, "--vtk", desk.file("v"), "--ply", desk.file("p"), "--latitudes", "4", "--time", "0.32"}).status == 0);
+  REQUIRE(desk({"export", file, "--vtk", desk.file("v"), "--ply", desk.file("p"), "--latitudes", "4", "--time", "0.32"})
+              .status == 0);
   std::set<std::string> meshes;
   for (const char* folder : {"v", "p"})
     for (const auto& entry : fs::directory_iterator(desk / folder))
@@ -376,7 +393,8 @@ TEST_CASE("export writes the state nearest to a time, and refuses times that the
   }
 }
 
-TEST_CASE("a poster beyond the end is refused, and a run that ended before its own says that there is none", "[commands]") {
+TEST_CASE("a poster beyond the end is refused, and a run that ended before its own says that there is none",
+          "[commands]") {
   const Desk desk(scene + "[movie]\nposter = 0.4\n");
   const Outcome early = desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "--steps", "2"});
   CHECK(early.status == 0);
@@ -399,15 +417,18 @@ TEST_CASE("a warning of resolution shows a share and a bound that differ", "[com
   CHECK(sim::told_apart(15.2, 15).first == "15.2");
   CHECK(sim::told_apart(0.1 + 0.2, 0.3).first != sim::told_apart(0.1 + 0.2, 0.3).second);  // neighbours
   const Desk desk;  // the bound just below the share that the shape has
-  const Outcome coarse = desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--steps", "0", "--set", "vesicle.order=4", "--set",
-                               "vesicle.reduced_volume=0.7", "--set", "numerics.tail_warning=1e-9"});
-  const std::string share = coarse.err.substr(coarse.err.find('(') + 1, coarse.err.find(" % of") - coarse.err.find('(') - 1);
+  const Outcome coarse =
+      desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--steps", "0", "--set", "vesicle.order=4",
+            "--set", "vesicle.reduced_volume=0.7", "--set", "numerics.tail_warning=1e-9"});
+  const std::string share =
+      coarse.err.substr(coarse.err.find('(') + 1, coarse.err.find(" % of") - coarse.err.find('(') - 1);
   INFO(coarse.err);
   REQUIRE(coarse.err.find(" % of") != std::string::npos);
   const double rounded = std::stod(share) / 100;  // to three digits
   for (const double bound : {rounded * (1 - 1e-3), rounded}) {
-    const Outcome warned = desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--force", "--steps", "0", "--set", "vesicle.order=4",
-                                 "--set", "vesicle.reduced_volume=0.7", "--set", "numerics.tail_warning=" + std::to_string(bound)});
+    const Outcome warned = desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--force", "--steps", "0",
+                                 "--set", "vesicle.order=4", "--set", "vesicle.reduced_volume=0.7", "--set",
+                                 "numerics.tail_warning=" + std::to_string(bound)});
     const std::size_t at = warned.err.find("bound ");
     if (at == std::string::npos) continue;  // the share was rounded up
     const std::string limit = warned.err.substr(at + 6, warned.err.find(" %)") - at - 6);
@@ -420,8 +441,10 @@ TEST_CASE("the help of a command says what its options do there", "[commands]") 
   const auto help = [&](const char* command) {
     std::string text = desk({command, "--help"}).out, plain;  // lines are broken
     for (const char c : text)
-      if (c != ' ' && c != '\n') plain += c;
-      else if (!plain.empty() && plain.back() != ' ') plain += ' ';
+      if (c != ' ' && c != '\n')
+        plain += c;
+      else if (!plain.empty() && plain.back() != ' ')
+        plain += ' ';
     return plain;
   };
   CHECK_THAT(help("run"), Contains("threads (default: numerics.threads") && !Contains("processes"));

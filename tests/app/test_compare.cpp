@@ -78,7 +78,8 @@ TEST_CASE("compare answers 0 for the same, 1 for different, 2 for what cannot be
   support::write_file(desk / "actual/f.png", "not a picture");
   o = desk.compare();
   CHECK(o.status == 2);
-  CHECK_THAT(o.out, Contains("missing    c.png  expected, but not made") && Contains("new        d.png  made, but nothing is expected") &&
+  CHECK_THAT(o.out, Contains("missing    c.png  expected, but not made") &&
+                        Contains("new        d.png  made, but nothing is expected") &&
                         Contains("size       e.png  40 x 30 expected, 41 x 30 made") && Contains("unreadable f.png") &&
                         Contains("is not a PNG file"));
   CHECK(desk.pair("expected/a.png", "actual/deep/b.png").status == 1);
@@ -102,28 +103,32 @@ TEST_CASE("every threshold of compare can be changed", "[compare]") {
   CHECK(desk.compare({"--pixels", "25", "--largest", "127", "--rmse", "50"}).status == 1);
   CHECK(desk.compare({"--pixels", "inf", "--largest", "inf", "--rmse", "inf"}).status == 0);  // lifted
   CHECK(desk.compare({"--preset", "perceptual"}).status == 1);
-  CHECK(desk.compare({"--preset", "perceptual", "--flip-mean", "1", "--flip-max", "1", "--flip-spot", "1"}).status == 0);
+  CHECK(desk.compare({"--preset", "perceptual", "--flip-mean", "1", "--flip-max", "1", "--flip-spot", "1"}).status ==
+        0);
   CHECK_THAT(desk.compare({"--preset", "perceptual"}).out, Contains("FLIP mean"));
 }
 
 TEST_CASE("compare refuses a threshold under which everything would pass", "[compare]") {
   const Desk desk;
   desk.put("actual/a.png", with_square(3, 3));
-  for (const char* name : {"--channel", "--pixels", "--share", "--largest", "--rmse", "--flip-mean", "--flip-max", "--flip-spot", "--ppd"})
+  for (const char* name :
+       {"--channel", "--pixels", "--share", "--largest", "--rmse", "--flip-mean", "--flip-max", "--flip-spot", "--ppd"})
     for (const char* value : {"nan", "-1", "-inf", "x", "1e999"}) {
       const Outcome o = desk.compare({name, value});
       INFO(name << " " << value << ": " << o.err);
       CHECK(o.status == 2);
       CHECK_THAT(o.err, Contains(name));
     }
-  for (const char* ppd : {"0", "1", "1e9", "inf"}) CHECK(desk.compare({"--preset", "perceptual", "--ppd", ppd}).status == 2);
+  for (const char* ppd : {"0", "1", "1e9", "inf"})
+    CHECK(desk.compare({"--preset", "perceptual", "--ppd", ppd}).status == 2);
 }
 
 TEST_CASE("masks and rectangles leave regions out", "[compare]") {
   const Desk desk;
   desk.put("actual/a.png", with_square(8, 9));
   CHECK(desk.compare({"--ignore", "8,9,5x5"}).status == 0);
-  CHECK(desk.compare({"--ignore", "8,9,4x5", "--rmse", "5", "--largest", "inf"}).status == 0);  // five pixels are left, and ten may differ
+  CHECK(desk.compare({"--ignore", "8,9,4x5", "--rmse", "5", "--largest", "inf"}).status ==
+        0);  // five pixels are left, and ten may differ
   CHECK(desk.compare({"--ignore", "8,9,2x5"}).status == 1);
   CHECK(desk.compare({"--ignore", "8,9,5"}).status == 2);
   render::Image mask(40, 30, 3);
@@ -147,7 +152,8 @@ TEST_CASE("a comparison of nothing is not a comparison", "[compare]") {
   desk.put("all.png", all);
   Outcome o = desk.compare({"--ignore", "0,0,40x30"});
   CHECK(o.status == 2);
-  CHECK_THAT(o.out, Contains("unreadable a.png  the mask leaves nothing to compare") && Contains("1 picture: 1 unreadable"));
+  CHECK_THAT(o.out,
+             Contains("unreadable a.png  the mask leaves nothing to compare") && Contains("1 picture: 1 unreadable"));
   CHECK(desk.compare({"--mask", desk.file("all.png")}).status == 2);
   CHECK(desk.compare({"--ignore", "0,0,40x29"}).status == 0);
   desk.put("expected/a.mask.png", all);
@@ -189,13 +195,16 @@ TEST_CASE("the reports of compare name every picture and escape their names", "[
   desk.put("expected/" + odd, picture());
   desk.put("actual/" + odd, with_square(10, 12));
   desk.put("expected/c.png", picture());
-  const Outcome o = desk.compare({"--json", "--junit", desk.file("j.xml"), "--html", desk.file("page"), "--diff", desk.file("d")});
+  const Outcome o =
+      desk.compare({"--json", "--junit", desk.file("j.xml"), "--html", desk.file("page"), "--diff", desk.file("d")});
   CHECK(o.status == 2);
-  CHECK_THAT(o.out, Contains("\"status\": 2") && Contains("\"name\": \"deep/<b>&\\\"quoted\\\".png\", \"verdict\": \"different\"") &&
+  CHECK_THAT(o.out, Contains("\"status\": 2") &&
+                        Contains("\"name\": \"deep/<b>&\\\"quoted\\\".png\", \"verdict\": \"different\"") &&
                         Contains("\"above\": 25") && Contains("\"box\": [10, 12, 15, 17]"));
-  CHECK_THAT(support::read_file(desk / "j.xml"),
-             Contains("tests=\"3\" failures=\"1\" errors=\"1\"") && Contains("name=\"deep/&lt;b&gt;&amp;&quot;quoted&quot;.png\"") &&
-                 Contains("<failure type=\"different\"") && Contains("<error type=\"missing\""));
+  CHECK_THAT(support::read_file(desk / "j.xml"), Contains("tests=\"3\" failures=\"1\" errors=\"1\"") &&
+                                                     Contains("name=\"deep/&lt;b&gt;&amp;&quot;quoted&quot;.png\"") &&
+                                                     Contains("<failure type=\"different\"") &&
+                                                     Contains("<error type=\"missing\""));
   const std::string page = support::read_file(desk / "page/index.html");
   CHECK_THAT(page, Contains("deep/&lt;b&gt;&amp;") && Contains("data:image/png;base64,") && !Contains("{{"));
   CHECK(page.find("different</b>") < page.find("missing</b>"));
@@ -205,8 +214,10 @@ TEST_CASE("the reports of compare name every picture and escape their names", "[
 TEST_CASE("the verdict of compare survives a closed pipe", "[compare]") {
   const Desk desk;
   desk.put("actual/a.png", with_square(20, 20));
-  const std::string command = std::string(TANKTREAD_PROGRAM) + " compare " + desk.file("expected") + " " + desk.file("actual");
-  CHECK(support::run(desk, {"/bin/bash", "-c", "trap '' PIPE; " + command + " | true; exit ${PIPESTATUS[0]}"}).status == 1);
+  const std::string command =
+      std::string(TANKTREAD_PROGRAM) + " compare " + desk.file("expected") + " " + desk.file("actual");
+  CHECK(support::run(desk, {"/bin/bash", "-c", "trap '' PIPE; " + command + " | true; exit ${PIPESTATUS[0]}"}).status ==
+        1);
   CHECK(support::run(desk, {"/bin/bash", "-c", command + " >&-"}).status == 2);
 }
 
@@ -218,14 +229,16 @@ TEST_CASE("compare passes over no picture without a word", "[compare]") {
   CHECK(o.status == 1);
   CHECK_THAT(o.out, Contains("different  x.PNG") && Contains("2 pictures:"));
   support::write_file(desk / "actual/b.JPG", "\xff\xd8\xff\xe0");
-  CHECK_THAT(desk.compare().err, Contains("only PNG pictures are compared: 1 of another format was passed over, such as 'b.JPG'"));
+  CHECK_THAT(desk.compare().err,
+             Contains("only PNG pictures are compared: 1 of another format was passed over, such as 'b.JPG'"));
   support::write_file(desk / "actual/a.png", "\xff\xd8\xff\xe0 and so on");
   o = desk.compare();
   CHECK(o.status == 2);
   CHECK_THAT(o.out, Contains("is not a PNG file but a JPEG picture"));
 }
 
-TEST_CASE("a picture whose name looks like a mask or a further baseline is a picture where it is made, too", "[compare]") {
+TEST_CASE("a picture whose name looks like a mask or a further baseline is a picture where it is made, too",
+          "[compare]") {
   const Desk desk;
   for (const char* name : {"a.altitude.png", "a.alt1.png", "a.mask.png"}) {
     desk.put(std::string("expected/") + name, with_square(20, 20));
@@ -279,7 +292,8 @@ TEST_CASE("compare --update writes neither through links nor beyond the folder",
 TEST_CASE("reports of compare replace neither what is compared nor what compare did not write", "[compare]") {
   const Desk desk;
   desk.put("actual/a.png", with_square(20, 20));
-  const std::string expected = support::read_file(desk / "expected/a.png"), actual = support::read_file(desk / "actual/a.png");
+  const std::string expected = support::read_file(desk / "expected/a.png"),
+                    actual = support::read_file(desk / "actual/a.png");
   for (const char* folder : {"expected", "actual", "expected/deep", "actual/new/er"}) {
     const Outcome o = desk.compare({"--diff", desk.file(folder), "--update"});
     CHECK(o.status == 2);
@@ -303,22 +317,28 @@ TEST_CASE("reports of compare replace neither what is compared nor what compare 
   CHECK(support::read_file(desk / "precious") == "precious");
   // Its own are renewed.
   for (int turn = 0; turn < 2; ++turn)
-    CHECK(desk.compare({"--junit", desk.file("j.xml"), "--html", desk.file("h"), "--diff", desk.file("diff")}).status == 1);
+    CHECK(desk.compare({"--junit", desk.file("j.xml"), "--html", desk.file("h"), "--diff", desk.file("diff")}).status ==
+          1);
 }
 
 TEST_CASE("no name of a file breaks a line or a report of compare", "[compare]") {
   const Desk desk;
   for (const char* name : {"new\nline::error::x.png", "esc\x1b[31m.png", "sur\xed\xa0\x80.png", "over\xe0\x80\x80.png",
-                           "big\xf4\x90\x80\x80.png", "non\xef\xbf\xbe.png", "c1\xc2\x9b" "31m.png", "bidi\u202egnp.png", "{{equal}}.png"}) {
+                           "big\xf4\x90\x80\x80.png", "non\xef\xbf\xbe.png",
+                           "c1\xc2\x9b"
+                           "31m.png",
+                           "bidi\u202egnp.png", "{{equal}}.png"}) {
     desk.put(std::string("expected/") + name, picture());
     desk.put(std::string("actual/") + name, with_square(20, 20));
   }
   const Outcome lines = desk.compare({"--junit", desk.file("j.xml"), "--html", desk.file("page")});
   const Outcome json = desk.compare({"--json"});
   CHECK_THAT(lines.out, Contains("new?line::error::x.png") && Contains("esc?[31m.png") && Contains("sur???.png") &&
-                            Contains("over???.png") && Contains("big????.png") && Contains("non???.png") && Contains("c1?31m.png") &&
-                            Contains("bidi?gnp.png") && !Contains("\n::") && !Contains("\x1b"));
-  CHECK_THAT(json.out, Contains("new\\u000aline::error::x.png") && Contains("sur???.png") && Contains("bidi\\u202egnp.png"));
+                            Contains("over???.png") && Contains("big????.png") && Contains("non???.png") &&
+                            Contains("c1?31m.png") && Contains("bidi?gnp.png") && !Contains("\n::") &&
+                            !Contains("\x1b"));
+  CHECK_THAT(json.out,
+             Contains("new\\u000aline::error::x.png") && Contains("sur???.png") && Contains("bidi\\u202egnp.png"));
   const std::string page = support::read_file(desk / "page/index.html");
   CHECK_THAT(page, Contains("{{equal}}.png") && Contains("sur???.png"));
   for (const std::string& text : {json.out, support::read_file(desk / "j.xml"), page}) CHECK(valid_utf8(text));
@@ -334,7 +354,8 @@ TEST_CASE("pipes and loops of links do not hold compare up", "[compare]") {
   fs::remove(desk / "actual/pipe.png");
   fs::remove(desk / "expected/pipe.png");
   for (const char* side : {"expected", "actual"})
-    for (const char* link : {"p", "q", "deep/up"}) fs::create_directory_symlink(std::string(link) == "deep/up" ? ".." : ".", desk / side / link);
+    for (const char* link : {"p", "q", "deep/up"})
+      fs::create_directory_symlink(std::string(link) == "deep/up" ? ".." : ".", desk / side / link);
   CHECK_THAT(desk.compare().out, Contains("1 picture: 1 same"));
 }
 
@@ -345,8 +366,8 @@ TEST_CASE("compare obeys the first signal", "[compare]") {
   desk.put("expected/large.png", large);
   for (std::uint8_t& v : large.pixels) v = 40;
   desk.put("actual/large.png", large);
-  const std::string command = std::string(TANKTREAD_PROGRAM) + " compare --preset perceptual " + desk.file("expected/large.png") + " " +
-                              desk.file("actual/large.png");
+  const std::string command = std::string(TANKTREAD_PROGRAM) + " compare --preset perceptual " +
+                              desk.file("expected/large.png") + " " + desk.file("actual/large.png");
   const Outcome o = support::run(desk, {"/bin/bash", "-c", command + " & sleep 1.5; kill -TERM $!; wait $!"});
   CHECK(o.status == 130);
   CHECK_THAT(o.err, Contains("interrupted"));
@@ -366,7 +387,8 @@ TEST_CASE("two small files that unpack to many pixels are compared piece by piec
   desk.put("expected/large.png", large);
   large.at(2000, 2000)[0] = 255;
   desk.put("actual/large.png", large);
-  // Two pictures of 48 MB, a few of their rows and the program itself; at once FLIP took some 80 bytes a pixel and picture.
+  // Two pictures of 48 MB, a few of their rows and the program itself; at once FLIP took some 80 bytes a pixel and
+  // picture.
   const std::string command = "ulimit -v 700000; " + std::string(TANKTREAD_PROGRAM) + " compare --preset perceptual " +
                               desk.file("expected/large.png") + " " + desk.file("actual/large.png");
   const Outcome o = support::run(desk, {"/bin/bash", "-c", command});

@@ -20,9 +20,10 @@ struct Bench {
   support::TemporaryFolder folder;
   std::string trajectory = (folder / "t.h5").string();
   explicit Bench(const std::vector<std::string>& changes = {}) {
-    std::vector<std::string> words{TANKTREAD_PROGRAM, "simulate", std::string(TANKTREAD_SCENES) + "/tank-treading.toml", "-q",
-                                   "-o", trajectory};
-    for (const char* change : {"vesicle.order=4", "time.end=0.3", "time.save_every=0.1"}) words.insert(words.end(), {"--set", change});
+    std::vector<std::string> words{
+        TANKTREAD_PROGRAM, "simulate", std::string(TANKTREAD_SCENES) + "/tank-treading.toml", "-q", "-o", trajectory};
+    for (const char* change : {"vesicle.order=4", "time.end=0.3", "time.save_every=0.1"})
+      words.insert(words.end(), {"--set", change});
     for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
     REQUIRE(support::run(folder, words).status == 0);
   }
@@ -40,8 +41,8 @@ TEST_CASE("every kind of figure is drawn from a trajectory, at the size that is 
   for (const render::FigureRow& row : render::figures()) {
     INFO(row.name);
     const std::string name(row.name);
-    const support::Outcome drawn = bench.figure(name, {"--size", "320x240px", "--theme", "slides", "--set", "figure.spacing=0.6",
-                                                       "--set", "figure.panels=2"});
+    const support::Outcome drawn = bench.figure(
+        name, {"--size", "320x240px", "--theme", "slides", "--set", "figure.spacing=0.6", "--set", "figure.panels=2"});
     INFO(drawn.err);
     REQUIRE(drawn.status == 0);
     for (const char* ending : {".svg", ".pdf", ".csv"}) CHECK(fs::file_size(bench.folder / (name + ending)) > 30);
@@ -54,7 +55,8 @@ TEST_CASE("every kind of figure is drawn from a trajectory, at the size that is 
 TEST_CASE("every quantity can be drawn against time", "[figure]") {
   const Bench bench;
   std::string all;
-  for (const app::QuantityRow& row : app::quantities()) all += fmt::format("{}\"{}\"", all.empty() ? "" : ",", row.name);
+  for (const app::QuantityRow& row : app::quantities())
+    all += fmt::format("{}\"{}\"", all.empty() ? "" : ",", row.name);
   const support::Outcome drawn = bench.figure("time-series", {"--set", "figure.quantities=[" + all + "]"});
   INFO(drawn.err);
   REQUIRE(drawn.status == 0);
@@ -95,10 +97,12 @@ TEST_CASE("a figure that cannot be says why in one sentence", "[figure]") {
   CHECK_THAT(complaint("overlay", {"--set", "figure.plane_point=[0,9,0]"}), Contains("cuts no vesicle"));
   CHECK_THAT(complaint("streamlines", {"--set", "figure.plane_point=[0,9,0]"}), Contains("cuts no vesicle"));
   CHECK_THAT(complaint("overlay", {"--set", "figure.plane_normal=[0,0,0]"}), Contains("plane_normal"));
-  CHECK_THAT(complaint("overlay", {"--set", "figure.times=[0.30000002]"}), Contains("to t = 0.3; there is no t = 0.30000002 for figure.times"));
+  CHECK_THAT(complaint("overlay", {"--set", "figure.times=[0.30000002]"}),
+             Contains("to t = 0.3; there is no t = 0.30000002 for figure.times"));
 }
 
-TEST_CASE("a figure of tank-treading refuses a vesicle that tumbles and says what a short run leaves open", "[figure]") {
+TEST_CASE("a figure of tank-treading refuses a vesicle that tumbles and says what a short run leaves open",
+          "[figure]") {
   const Bench rests;
   const support::Outcome shown = rests.figure("tank-treading", {});
   CHECK(shown.status == 0);

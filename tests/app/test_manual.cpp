@@ -1,7 +1,7 @@
 // The manual page and the completion of the shell tell all that the command line takes.
-#include "app/scene/catalogues.h"
 #include "app/commands/commands.h"
 #include "app/export/reference.h"
+#include "app/scene/catalogues.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
 
@@ -54,7 +54,8 @@ TEST_CASE("the manual page names every command, every option, every key and ever
       at = end;
     }
   }
-  for (const app::ReferenceKey& key : app::reference_keys()) CHECK_THAT(plain, Contains("\n\\fB" + key.name + "\\fR\n"));
+  for (const app::ReferenceKey& key : app::reference_keys())
+    CHECK_THAT(plain, Contains("\n\\fB" + key.name + "\\fR\n"));
   for (const app::Catalogue& catalogue : app::catalogues())
     for (const auto& row : catalogue.rows) CHECK_THAT(plain, Contains("\n\\fB" + std::string(row.name) + "\\fR\n"));
 }

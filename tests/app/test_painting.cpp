@@ -1,8 +1,8 @@
 // The range of a field that was not given follows the values of the whole movie.
+#include "app/pictures/flow_picture.h"
 #include "app/pictures/painting.h"
 #include "app/pictures/pictures.h"
 #include "app/scene/scene_file.h"
-#include "app/pictures/flow_picture.h"
 
 #include "sim/stepping/simulate.h"
 #include "tests/support/catch.h"
@@ -28,7 +28,8 @@ order = 4
 [[vesicle]]
 shape = "sphere"
 order = 4
-center = [)" + std::to_string(2 + gap) + ", 0, 0]\n[view]\nstyle = \"field\"\nfield = \"" + field + "\"\n" + view;
+center = [)" + std::to_string(2 + gap) +
+                           ", 0, 0]\n[view]\nstyle = \"field\"\nfield = \"" + field + "\"\n" + view;
   const app::Settings settings = app::parse_scene(text, "s.toml", ".");
   const std::string file = (folder / "t.h5").string();
   sim::SimulationOptions options;
@@ -108,7 +109,8 @@ reduced_volume = 0.85
 order = 6
 [view]
 style = "field"
-field_range = )" + range + "\n", "s.toml", ".");
+field_range = )" + range + "\n",
+                                                  "s.toml", ".");
   const std::string file = (folder / "t.h5").string();
   sim::SimulationOptions options;
   options.trajectory = file;
@@ -124,10 +126,13 @@ render::Legend at_rest(const std::string& field, double radius, const std::strin
   const app::Settings settings = app::parse_scene(R"([flow]
 kind = "none"
 [time]
-end = )" + std::to_string(0.2 * radius * radius) + "\nstep = " + std::to_string(0.1 * radius * radius) + R"(
+end = )" + std::to_string(0.2 * radius * radius) +
+                                                      "\nstep = " + std::to_string(0.1 * radius * radius) + R"(
 [[vesicle]]
 order = 8
-shape = ")" + shape + "\"\nradius = " + std::to_string(radius) + "\n[view]\nstyle = \"field\"\nfield = \"" + field + "\"\n", "s.toml", ".");
+shape = ")" + shape + "\"\nradius = " + std::to_string(radius) +
+                                                      "\n[view]\nstyle = \"field\"\nfield = \"" + field + "\"\n",
+                                                  "s.toml", ".");
   const std::string file = (folder / "t.h5").string();
   sim::SimulationOptions options;
   options.trajectory = file;
@@ -140,7 +145,8 @@ shape = ")" + shape + "\"\nradius = " + std::to_string(radius) + "\n[view]\nstyl
 
 TEST_CASE("the bar has a head where values lie beyond a range that was given, and only there") {
   // The tension at the end lies between some 90 and 270.
-  const render::Legend around = bar_of("[50, 400]", true), within = bar_of("[120, 180]", true), below = bar_of("[-1, 0]", true);
+  const render::Legend around = bar_of("[50, 400]", true), within = bar_of("[120, 180]", true),
+                       below = bar_of("[-1, 0]", true);
   CHECK_FALSE(around.below);
   CHECK_FALSE(around.above);
   CHECK(within.below);
@@ -176,7 +182,9 @@ step = {0}
 order = 6
 radius = {1}
 bending_modulus = {2}
-)", 0.1, radius, radius * radius * radius), "s.toml", ".");
+)",
+                                                                0.1, radius, radius * radius * radius),
+                                                    "s.toml", ".");
     const std::string file = (folder / "t.h5").string();
     sim::SimulationOptions options;
     options.trajectory = file;

@@ -1,6 +1,6 @@
 // `tanktread render` and what `run` draws: frames, movies, stills and what stands on them.
-#include "app/pictures/captions.h"
 #include "app/base/folder_lock.h"
+#include "app/pictures/captions.h"
 #include "app/pictures/pictures.h"
 #include "app/scene/scene_file.h"
 #include "desk.h"
@@ -11,10 +11,10 @@
 #include "tests/support/catch.h"
 
 #include <fcntl.h>
-#include <set>
 #include <sys/file.h>
-#include <thread>
 #include <unistd.h>
+#include <set>
+#include <thread>
 
 using Catch::Contains;
 using commands::Desk;
@@ -43,7 +43,8 @@ TEST_CASE("frames between saved states are interpolated", "[commands]") {
   CHECK_FALSE(fs::exists(desk / "out/frames/000013.png"));
 }
 
-TEST_CASE("a movie is kept when it was made of the same frames at the same rate, and made anew otherwise", "[commands]") {
+TEST_CASE("a movie is kept when it was made of the same frames at the same rate, and made anew otherwise",
+          "[commands]") {
   const Desk desk;
   const auto run = [&] { REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"}).status == 0); };
   const auto render = [&](const std::string& rate) {
@@ -79,11 +80,13 @@ TEST_CASE("damaged or incomplete frames are drawn again", "[commands]") {
   CHECK(support::read_file(desk / "out/frames/000002.png") == whole);
 }
 
-TEST_CASE("without ffmpeg, or with a broken one, the frames are kept and a sentence says why there is no movie", "[commands]") {
+TEST_CASE("without ffmpeg, or with a broken one, the frames are kept and a sentence says why there is no movie",
+          "[commands]") {
   const Desk desk;
   fs::create_directory(desk / "bin");
   const auto run_with_path = [&](const std::string& path, const std::string& out) {
-    return support::run(desk, {"/usr/bin/env", "PATH=" + path, TANKTREAD_PROGRAM, "run", desk.file("s.toml"), "-o", desk.file(out)});
+    return support::run(
+        desk, {"/usr/bin/env", "PATH=" + path, TANKTREAD_PROGRAM, "run", desk.file("s.toml"), "-o", desk.file(out)});
   };
   const Outcome missing = run_with_path(desk.file("bin"), "a");
   CHECK(missing.status == 0);
@@ -101,7 +104,8 @@ TEST_CASE("without ffmpeg, or with a broken one, the frames are kept and a sente
   CHECK_FALSE(fs::exists(desk / "b/movie.mp4.tmp"));
 }
 
-TEST_CASE("a shard waits for another that is just letting go of the folder, but not for a writer of the whole", "[commands]") {
+TEST_CASE("a shard waits for another that is just letting go of the folder, but not for a writer of the whole",
+          "[commands]") {
   const support::TemporaryFolder folder;
   const std::string file = (folder.path() / ".tanktread.lock").string();
   const int held = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);  // what a shard does at its end
@@ -134,7 +138,8 @@ TEST_CASE("every movie format is written from the same frames, with a poster whe
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
   for (const char* format : {"mp4", "mkv", "gif", "webp"}) {
     INFO(format);
-    const Outcome outcome = desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--format", format, "--set", "movie.poster=0.3"});
+    const Outcome outcome =
+        desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--format", format, "--set", "movie.poster=0.3"});
     CHECK(outcome.status == 0);
     CHECK(fs::file_size(desk / (std::string("a/movie.") + format)) > 100);
     if (std::string(format) != "mp4") CHECK_THAT(outcome.out, Contains("0 frames drawn, 6 kept"));
@@ -182,25 +187,29 @@ TEST_CASE("a still is chosen by time, in any style, field and view", "[commands]
   CHECK_THAT(desk({"render", desk.file("t.h5"), "--time", "0.6"}).err, Contains("to t = 0.5"));
   CHECK_THAT(desk({"render", desk.file("t.h5"), "--style", "field", "--set", "view.field=neighbour-distance"}).err,
              Contains("two vesicles"));
-  CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.field=tention"}).err, Contains("did you mean 'tension'?"));
+  CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.field=tention"}).err,
+             Contains("did you mean 'tension'?"));
   CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.eye=[0, 0.1, 0]"}).err, Contains("inside vesicle 0"));
 }
 
 TEST_CASE("the inset cuts what the camera follows or aims at, not the middle between the vesicles", "[commands]") {
   // Between these two, in the plane of their common centroid, there is only fluid.
   std::string text = scene;
-  text.replace(text.find("order = 6\n"), 10, "order = 6\ncenter = [0, -3, 0]\n[[vesicle]]\nshape = \"sphere\"\norder = 6\ncenter = [0, 3, 0]\n");
+  text.replace(text.find("order = 6\n"), 10,
+               "order = 6\ncenter = [0, -3, 0]\n[[vesicle]]\nshape = \"sphere\"\norder = 6\ncenter = [0, 3, 0]\n");
   const Desk desk(text + "inset = true\n");
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q", "--steps", "0"}).status == 0);
   const auto coloured = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"render", desk.file("t.h5"), "--time", "0", "-o", desk.file("still.png"), "--size", "320x240"});
+    words.insert(words.begin(),
+                 {"render", desk.file("t.h5"), "--time", "0", "-o", desk.file("still.png"), "--size", "320x240"});
     const Outcome outcome = desk(words);
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
     const render::Image image = render::read_png(desk / "still.png").image;
     int count = 0;
     for (int y = 10; y < 50; ++y)  // within the box
-      for (int x = 255; x < 300; ++x) count += image.at(x, y)[2] > image.at(x, y)[0] + 20 || image.at(x, y)[0] > image.at(x, y)[2] + 20;
+      for (int x = 255; x < 300; ++x)
+        count += image.at(x, y)[2] > image.at(x, y)[0] + 20 || image.at(x, y)[0] > image.at(x, y)[2] + 20;
     return count;
   };
   CHECK(coloured({"--set", "view.target=[0, 0, 0]"}) == 0);
@@ -213,7 +222,8 @@ TEST_CASE("two trajectories stand side by side, the shorter one at rest at its e
   const Desk desk;
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("a.h5"), "-q"}).status == 0);
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("b.h5"), "-q", "--set", "time.end=0.3"}).status == 0);
-  const Outcome outcome = desk({"render", desk.file("a.h5"), desk.file("b.h5"), "-o", desk.file("both"), "--size", "128x48"});
+  const Outcome outcome =
+      desk({"render", desk.file("a.h5"), desk.file("b.h5"), "-o", desk.file("both"), "--size", "128x48"});
   INFO(outcome.err);
   CHECK(outcome.status == 0);
   CHECK(fs::exists(desk / "both/frames/000005.png"));
@@ -225,9 +235,9 @@ TEST_CASE("a full disk ends with one sentence; frames made before are kept, none
   REQUIRE(desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--size", "320x240", "--shard", "0/3"}).status == 0);
   const std::string before = support::read_file(desk / "a/frames/000000.png");
   // A limit on the size of files stands for the disk.
-  const Outcome full = support::run(
-      desk, {"/bin/sh", "-c", "trap '' XFSZ; ulimit -f 4; exec \"$@\"", "sh", TANKTREAD_PROGRAM, "render", desk.file("t.h5"),
-             "-o", desk.file("a"), "--size", "320x240", "--format", "mkv"});
+  const Outcome full =
+      support::run(desk, {"/bin/sh", "-c", "trap '' XFSZ; ulimit -f 4; exec \"$@\"", "sh", TANKTREAD_PROGRAM, "render",
+                          desk.file("t.h5"), "-o", desk.file("a"), "--size", "320x240", "--format", "mkv"});
   CHECK(full.status == 1);
   CHECK_THAT(full.err, Contains("File too large") && Contains("complete in") && Contains("continues"));
   CHECK(support::read_file(desk / "a/frames/000000.png") == before);
@@ -248,16 +258,17 @@ TEST_CASE("before and after material lines are laid anew the pictures say so", "
     return state;
   };
   {
-    sim::TrajectoryWriter writer =
-        sim::TrajectoryWriter::create(desk.file("u.h5"), reader.layout(), reader.header(), changed(0), reader.resume_payload());
+    sim::TrajectoryWriter writer = sim::TrajectoryWriter::create(desk.file("u.h5"), reader.layout(), reader.header(),
+                                                                 changed(0), reader.resume_payload());
     for (std::int64_t k = 1; k < reader.count(); ++k) writer.append(changed(k));
   }
   // 1.2 seconds at half a frame a second and 0.1 a frame: 0.06 before and after.
-  for (const auto& [time, told] : {std::pair{"0.1", false}, std::pair{"0.26", true}, std::pair{"0.34", true}, std::pair{"0.42", false}}) {
+  for (const auto& [time, told] :
+       {std::pair{"0.1", false}, std::pair{"0.26", true}, std::pair{"0.34", true}, std::pair{"0.42", false}}) {
     INFO(time);
     for (const char* name : {"t", "u"})
-      REQUIRE(desk({"render", desk.file(std::string(name) + ".h5"), "--time", time, "-o", desk.file(std::string(name) + ".png"),
-                    "--size", "320x180", "--set", "movie.frame_rate=0.5"})
+      REQUIRE(desk({"render", desk.file(std::string(name) + ".h5"), "--time", time, "-o",
+                    desk.file(std::string(name) + ".png"), "--size", "320x180", "--set", "movie.frame_rate=0.5"})
                   .status == 0);
     CHECK((desk({"compare", desk.file("t.png"), desk.file("u.png")}).status != 0) == told);
   }
@@ -280,7 +291,8 @@ TEST_CASE("a still of no time of the trajectory is refused", "[commands]") {
   const Desk desk;
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
   for (const char* time : {"nan", "-nan", "inf", "-1", "1e9"}) {
-    const Outcome outcome = desk({"render", desk.file("t.h5"), "-o", desk.file("a.png"), std::string("--time=") + time});
+    const Outcome outcome =
+        desk({"render", desk.file("t.h5"), "-o", desk.file("a.png"), std::string("--time=") + time});
     CHECK(outcome.status == 1);
     CHECK_THAT(outcome.err, Contains("the trajectory goes from t = 0"));
     CHECK_FALSE(fs::exists(desk / "a.png"));
@@ -306,7 +318,8 @@ reduced_volume = 0.85
 order = 4
 center = [4.8, 0, -0.4]
 [view]
-camera = ")") + camera + "\"\n", "s.toml", ".");
+camera = ")") + camera + "\"\n",
+                                                    "s.toml", ".");
     const std::string file = (folder / (std::string(camera) + ".h5")).string();
     sim::SimulationOptions options;
     options.trajectory = file;

@@ -9,14 +9,15 @@ TEST_CASE("a text on its way to a terminal keeps its letters and loses what acts
   CHECK(printable("") == "");
   CHECK(printable(std::string("a\0b", 3)) == "a?b");
   CHECK(printable("new\nline\r\t\x1b[31m\x7f") == "new?line???[31m?");
-  CHECK(printable("\xc2\x9b" "31m\xc2\x85") == "?31m?");                  // C1: a control sequence of one character; next line
-  CHECK(printable("a\u2028b\u2029c\u202egnp\u2066") == "a?b?c?gnp?");     // separators of lines, directions of writing
+  CHECK(printable("\xc2\x9b"
+                  "31m\xc2\x85") == "?31m?");  // C1: a control sequence of one character; next line
+  CHECK(printable("a\u2028b\u2029c\u202egnp\u2066") == "a?b?c?gnp?");  // separators of lines, directions of writing
 }
 
 TEST_CASE("what is no UTF-8 becomes a question mark a byte", "[printable]") {
   CHECK(printable("bad\xff\xfe.png") == "bad??.png");
-  CHECK(printable("\xed\xa0\x80") == "???");       // a surrogate
-  CHECK(printable("\xe0\x80\x80") == "???");       // longer than need be
+  CHECK(printable("\xed\xa0\x80") == "???");  // a surrogate
+  CHECK(printable("\xe0\x80\x80") == "???");  // longer than need be
   CHECK(printable("\xc0\xaf") == "??");
   CHECK(printable("\xf4\x90\x80\x80") == "????");  // beyond U+10FFFF
   CHECK(printable("\xef\xbf\xbe") == "???");       // U+FFFE

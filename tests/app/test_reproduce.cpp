@@ -33,7 +33,8 @@ double leading_number(const std::string& cell) { return std::stod(cell); }
 }  // namespace
 
 TEST_CASE("every item of the paper runs quickly and writes its files", "[reproduce]") {
-  const std::string item = GENERATE("table2", "table3", "table4", "table5", "fig2", "fig3", "fig4", "fig5", "fig6", "tank-treading");
+  const std::string item =
+      GENERATE("table2", "table3", "table4", "table5", "fig2", "fig3", "fig4", "fig5", "fig6", "tank-treading");
   const support::TemporaryFolder folder;
   const std::string out = (folder / "r").string();
   const support::Outcome outcome = support::run(folder, {TANKTREAD_PROGRAM, "reproduce", item, "--quick", "-o", out});
@@ -83,7 +84,8 @@ TEST_CASE("a reproduction replaces its own files and nobody else's", "[reproduce
   CHECK(support::read_file(out / "fig3.csv") == table);
   // A trajectory of somebody else, which no list can name.
   support::write_file(out / "fig6.h5", "mine");
-  const support::Outcome other = support::run(folder, {TANKTREAD_PROGRAM, "reproduce", "fig6", "--quick", "-q", "-o", out.string()});
+  const support::Outcome other =
+      support::run(folder, {TANKTREAD_PROGRAM, "reproduce", "fig6", "--quick", "-q", "-o", out.string()});
   CHECK(other.status == 1);
   CHECK_THAT(other.err, Contains("fig6.h5"));
   CHECK(support::read_file(out / "fig6.h5") == "mine");
@@ -98,8 +100,9 @@ TEST_CASE("an interrupted reproduction says what it leaves", "[reproduce]") {
   const support::Outcome outcome = support::finish(folder, child);
   REQUIRE(simulating);
   CHECK(outcome.status == 130);
-  CHECK_THAT(outcome.err, Contains("interrupted in fig6; none of its tables and figures is written, the simulation is in '" + out +
-                                   "/fig6.h5' as far as it went"));
+  CHECK_THAT(outcome.err,
+             Contains("interrupted in fig6; none of its tables and figures is written, the simulation is in '" + out +
+                      "/fig6.h5' as far as it went"));
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(out)) names.insert(entry.path().filename().string());
   CHECK(names == std::set<std::string>{".tanktread.files", "fig6.h5", "fig6.toml"});

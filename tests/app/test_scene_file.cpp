@@ -56,7 +56,8 @@ TEST_CASE("a scene is read with its defaults", "[scene]") {
 
 TEST_CASE("the resolved scene gives the same scene again", "[scene]") {
   for (const std::string& extra :
-       {std::string(), std::string("[[flow]]\nkind = \"poiseuille\"\ncurvature = 0.1\n"), std::string("[numerics]\nupsampling = 3\n"),
+       {std::string(), std::string("[[flow]]\nkind = \"poiseuille\"\ncurvature = 0.1\n"),
+        std::string("[numerics]\nupsampling = 3\n"),
         std::string("[[figure]]\nkind = \"cross-sections\"\ntimes = [0, 1.5]\n[view]\nsize = [160, 90]\n")}) {
     std::string scene = good;
     if (extra.starts_with("[[flow]]")) scene = replaced("[flow]", "[[flow]]");
@@ -79,7 +80,8 @@ TEST_CASE("numbers are written with the digits that give the same number", "[sce
 }
 
 TEST_CASE("an unknown key is told with line, column and the nearest known one", "[scene]") {
-  CHECK(error_of(replaced("order = 12", "oder = 12")) == "s.toml:14:1: unknown key 'oder' in [vesicle] (did you mean 'order'?)");
+  CHECK(error_of(replaced("order = 12", "oder = 12")) ==
+        "s.toml:14:1: unknown key 'oder' in [vesicle] (did you mean 'order'?)");
   CHECK(error_of(replaced("[time]", "[tiem]")) == "s.toml:7:2: unknown table 'tiem' (did you mean 'time'?)");
   CHECK_THAT(error_of(good + "[view]\nstile = \"opaque\"\n"), Contains("s.toml:16:1") && Contains("'style'"));
 }
@@ -95,8 +97,10 @@ TEST_CASE("values out of range are told with line, column and range", "[scene]")
 }
 
 TEST_CASE("more steps or frames than anybody can wait for are refused, whichever key asks for them", "[scene]") {
-  CHECK(error_of(replaced("step = 0.1", "step = 1e-10")) == "s.toml:9:8: 2e+10 steps are too many; 'step' must be longer");
-  CHECK(error_of(replaced("step = 0.1", "save_every = 1e-10")) == "s.toml:9:14: 2e+10 steps are too many; 'save_every' must be longer");
+  CHECK(error_of(replaced("step = 0.1", "step = 1e-10")) ==
+        "s.toml:9:8: 2e+10 steps are too many; 'step' must be longer");
+  CHECK(error_of(replaced("step = 0.1", "save_every = 1e-10")) ==
+        "s.toml:9:14: 2e+10 steps are too many; 'save_every' must be longer");
   CHECK(error_of(good + "[movie]\ntime_per_frame = 1e-300\n") ==
         "s.toml:16:18: 2e+300 frames are too many; 'time_per_frame' must be longer");
   CHECK_THAT(error_of(good, {"movie.time_per_frame=1e-300"}), Contains("frames are too many"));
@@ -106,25 +110,34 @@ TEST_CASE("more steps or frames than anybody can wait for are refused, whichever
 }
 
 TEST_CASE("values of the wrong type are told with line and column", "[scene]") {
-  CHECK(error_of(replaced("order = 12", "order = \"12\"")) == "s.toml:14:9: 'order' must be a whole number, not the text \"12\"");
-  CHECK(error_of(replaced("order = 12", "order = 12.5")) == "s.toml:14:9: 'order' must be a whole number, not the number 12.5");
-  CHECK_THAT(error_of(replaced("order = 12", "center = [1, 2]")), Contains("s.toml:14:10") && Contains("three numbers"));
+  CHECK(error_of(replaced("order = 12", "order = \"12\"")) ==
+        "s.toml:14:9: 'order' must be a whole number, not the text \"12\"");
+  CHECK(error_of(replaced("order = 12", "order = 12.5")) ==
+        "s.toml:14:9: 'order' must be a whole number, not the number 12.5");
+  CHECK_THAT(error_of(replaced("order = 12", "center = [1, 2]")),
+             Contains("s.toml:14:10") && Contains("three numbers"));
   CHECK_THAT(error_of(replaced("order = 12", "center = [1, 2, \"x\"]")), Contains("s.toml:14:17"));
   CHECK_THAT(error_of(replaced("[time]", "[[time]]")), Contains("must be one table"));
 }
 
 TEST_CASE("unknown words are told with the nearest known one", "[scene]") {
-  CHECK_THAT(error_of(replaced("prolate", "prolat")), Contains("s.toml:12:9") && Contains("did you mean 'prolate'?") && Contains("list shapes"));
+  CHECK_THAT(error_of(replaced("prolate", "prolat")),
+             Contains("s.toml:12:9") && Contains("did you mean 'prolate'?") && Contains("list shapes"));
   CHECK_THAT(error_of(replaced("shear", "sheer")), Contains("s.toml:4:8") && Contains("did you mean 'shear'?"));
 }
 
 TEST_CASE("a key of another kind is refused, a missing one is asked for", "[scene]") {
-  CHECK(error_of(replaced("rate = 1.0", "curvature = 1")) == "s.toml:5:1: 'curvature' is a key of flow 'poiseuille', not of 'shear'");
-  CHECK(error_of(good + "\n[[placement]]\nkind = \"box\"\ncount = 2\nvolume_fraction = 0.05\n") == "");  // its gap is computed
+  CHECK(error_of(replaced("rate = 1.0", "curvature = 1")) ==
+        "s.toml:5:1: 'curvature' is a key of flow 'poiseuille', not of 'shear'");
+  CHECK(error_of(good + "\n[[placement]]\nkind = \"box\"\ncount = 2\nvolume_fraction = 0.05\n") ==
+        "");  // its gap is computed
   CHECK(error_of(good + "\n[[placement]]\nkind = \"tube\"\ncount = 2\nvolume_fraction = 0.05\n") == "");
-  CHECK_THAT(error_of(replaced("reduced_volume = 0.85", "")), Contains("s.toml:12:9") && Contains("needs the key 'reduced_volume'"));
-  CHECK_THAT(error_of(replaced("prolate", "ellipsoid")), Contains("s.toml:13:1") && Contains("'reduced_volume' is a key of shape"));
-  CHECK_THAT(error_of(replaced("rate = 1.0", "frequency = 2.0")), Contains("s.toml:5:13") && Contains("time_factor 'oscillating'"));
+  CHECK_THAT(error_of(replaced("reduced_volume = 0.85", "")),
+             Contains("s.toml:12:9") && Contains("needs the key 'reduced_volume'"));
+  CHECK_THAT(error_of(replaced("prolate", "ellipsoid")),
+             Contains("s.toml:13:1") && Contains("'reduced_volume' is a key of shape"));
+  CHECK_THAT(error_of(replaced("rate = 1.0", "frequency = 2.0")),
+             Contains("s.toml:5:13") && Contains("time_factor 'oscillating'"));
 }
 
 TEST_CASE("contradictions and reserved keys are refused", "[scene]") {
@@ -139,16 +152,19 @@ TEST_CASE("contradictions and reserved keys are refused", "[scene]") {
 
 TEST_CASE("missing files are told", "[scene]") {
   const support::TemporaryFolder folder;
-  CHECK_THAT(message_of([&] { app::read_scene(folder / "none.toml"); }), Contains("none.toml") && Contains("no such scene"));
+  CHECK_THAT(message_of([&] { app::read_scene(folder / "none.toml"); }),
+             Contains("none.toml") && Contains("no such scene"));
   CHECK_THAT(message_of([&] { app::read_scene(folder.path()); }), Contains("is not a file"));
-  const std::string text = replaced("shape = \"prolate\"\nreduced_volume = 0.85", "shape = \"file\"\nfile = \"blob.txt\"");
+  const std::string text =
+      replaced("shape = \"prolate\"\nreduced_volume = 0.85", "shape = \"file\"\nfile = \"blob.txt\"");
   support::write_file(folder / "s.toml", text);
   CHECK_THAT(message_of([&] { app::read_scene(folder / "s.toml"); }), Contains("s.toml:13:8") && Contains("blob.txt"));
 }
 
 TEST_CASE("a shape file counts by what it holds, not by where it lies", "[scene]") {
   const support::TemporaryFolder folder;
-  const std::string text = replaced("shape = \"prolate\"\nreduced_volume = 0.85", "shape = \"file\"\nfile = \"blob.txt\"");
+  const std::string text =
+      replaced("shape = \"prolate\"\nreduced_volume = 0.85", "shape = \"file\"\nfile = \"blob.txt\"");
   const std::string sphere = "coefficients\n1 1 1 0 0\n1 -1 0 1 0\n1 0 0 0 1\n";
   support::write_file(folder / "s.toml", text);
   support::write_file(folder / "blob.txt", sphere);
@@ -165,7 +181,8 @@ TEST_CASE("a shape file counts by what it holds, not by where it lies", "[scene]
 }
 
 TEST_CASE("what two tables say together is checked before the run", "[scene]") {
-  CHECK_THAT(error_of(good + "[numerics]\nsource_order = 8\n"), Contains("s.toml:16:16") && Contains("order 12, not 8"));
+  CHECK_THAT(error_of(good + "[numerics]\nsource_order = 8\n"),
+             Contains("s.toml:16:16") && Contains("order 12, not 8"));
   CHECK_THAT(error_of(good + "[numerics]\nrepulsion_strength = 1\nnear_rule = false\n"),
              Contains("s.toml:17:13") && Contains("near_rule = true"));
   CHECK_THAT(error_of(good + "[numerics]\nlabel_order = 1\n"), Contains("s.toml:16:15") && Contains("at least 4"));
@@ -186,7 +203,8 @@ TEST_CASE("overrides change any key, and their errors name them", "[scene]") {
   CHECK(s.scene.flows[0].rate == 2);
   CHECK(s.scene.title == "new");
   CHECK(error_of(good, {"vesicle.order=1"}) == "--set vesicle.order=1: 'order' must be at least 2, at most 64, not 1");
-  CHECK(error_of(good, {"vesicle.oder=3"}) == "--set vesicle.oder=3: unknown key 'oder' in [vesicle] (did you mean 'order'?)");
+  CHECK(error_of(good, {"vesicle.oder=3"}) ==
+        "--set vesicle.oder=3: unknown key 'oder' in [vesicle] (did you mean 'order'?)");
   CHECK_THAT(error_of(good, {"vesicle.1.order=3"}), Contains("numbered from 0 to 0"));
   CHECK_THAT(error_of(good, {"time.end"}), Contains("section.key=value"));
   CHECK_THAT(error_of(good, {"viev.size=[1,2]"}), Contains("did you mean 'view'?"));
@@ -200,14 +218,16 @@ TEST_CASE("a key without its table, or in another one, is told with the table it
   CHECK_THAT(error_of(good, {"flow.viscosity_contrast=3"}),
              Contains("unknown key 'viscosity_contrast' in [flow] (did you mean 'vesicle.viscosity_contrast'?)"));
   CHECK_THAT(error_of(good, {"step=0.1"}), Contains("(did you mean 'time.step'?)"));
-  CHECK_THAT(error_of("viscosity_contrast = 3\n" + good), Contains("s.toml:1:1: ") && Contains("'vesicle.viscosity_contrast'"));
+  CHECK_THAT(error_of("viscosity_contrast = 3\n" + good),
+             Contains("s.toml:1:1: ") && Contains("'vesicle.viscosity_contrast'"));
   CHECK_THAT(error_of(good, {"titel=x"}), Contains("(did you mean 'title'?)"));
 }
 
 TEST_CASE("numbers on the command line may lack the digit before or after their point", "[scene]") {
   CHECK(parse_scene(good, "s.toml", ".", {"time.end=.5"}).scene.time.end == 0.5);
   CHECK(parse_scene(good, "s.toml", ".", {"time.end=5."}).scene.time.end == 5);
-  CHECK(parse_scene(good, "s.toml", ".", {"vesicle.center=[-.5, +.25, 1.]"}).scene.vesicles[0].center == sim::Vec3(-0.5, 0.25, 1));
+  CHECK(parse_scene(good, "s.toml", ".", {"vesicle.center=[-.5, +.25, 1.]"}).scene.vesicles[0].center ==
+        sim::Vec3(-0.5, 0.25, 1));
   CHECK(parse_scene(good, "s.toml", ".", {"time.end=.5e1"}).scene.time.end == 5);
   CHECK(parse_scene(good, "s.toml", ".", {"title=a.5"}).scene.title == "a.5");  // a text stays as it is
   CHECK(parse_scene(good, "s.toml", ".", {"title='.5'"}).scene.title == ".5");
@@ -229,8 +249,9 @@ TEST_CASE("a byte order mark at the start of a scene or a table is ignored", "[s
   const support::TemporaryFolder folder;
   support::write_file(folder / "blob.txt", mark + "coefficients\n1 1 1 0 0\n1 -1 0 1 0\n1 0 0 0 1\n");
   support::write_file(folder / "centres.txt", mark + "1 2 3\n4 5 6\n");
-  const std::string text = "[[vesicle]]\nshape = \"file\"\nfile = \"blob.txt\"\norder = 4\n[time]\nend = 1\nstep = 0.1\n"
-                           "[placement]\nkind = \"file\"\nfile = \"centres.txt\"\n[flow]\nkind = \"none\"\n";
+  const std::string text =
+      "[[vesicle]]\nshape = \"file\"\nfile = \"blob.txt\"\norder = 4\n[time]\nend = 1\nstep = 0.1\n"
+      "[placement]\nkind = \"file\"\nfile = \"centres.txt\"\n[flow]\nkind = \"none\"\n";
   support::write_file(folder / "s.toml", mark + text);
   const Settings s = app::read_scene(folder / "s.toml");
   REQUIRE(s.scene.vesicles.size() == 2);
@@ -240,20 +261,24 @@ TEST_CASE("a byte order mark at the start of a scene or a table is ignored", "[s
 }
 
 TEST_CASE("scenes of one title are told apart by the keys that differ, else by their files", "[scene]") {
-  const auto scene = [](const std::vector<std::string>& changes) { return parse_scene(good, "s.toml", ".", changes).scene; };
+  const auto scene = [](const std::vector<std::string>& changes) {
+    return parse_scene(good, "s.toml", ".", changes).scene;
+  };
   using Names = std::vector<std::string>;
   CHECK(app::distinct_names({scene({"vesicle.viscosity_contrast=1"}), scene({"vesicle.viscosity_contrast=3"}),
                              scene({"vesicle.viscosity_contrast=5.5"})},
-                            {"a", "b", "c"}) == Names{"viscosity_contrast = 1", "viscosity_contrast = 3", "viscosity_contrast = 5.5"});
-  CHECK(app::distinct_names({scene({"title=x"}), scene({"title=x", "flow.rate=2"}), scene({"title=y"})}, {"a", "b", "c"}) ==
-        Names{"x, rate = 1", "x, rate = 2", "y"});
+                            {"a", "b", "c"}) ==
+        Names{"viscosity_contrast = 1", "viscosity_contrast = 3", "viscosity_contrast = 5.5"});
+  CHECK(app::distinct_names({scene({"title=x"}), scene({"title=x", "flow.rate=2"}), scene({"title=y"})},
+                            {"a", "b", "c"}) == Names{"x, rate = 1", "x, rate = 2", "y"});
   CHECK(app::distinct_names({scene({}), scene({})}, {"a/t.h5", "b/t.h5"}) == Names{"a/t.h5", "b/t.h5"});
   CHECK(app::distinct_names({scene({}), scene({"vesicle.order=8"}), scene({"vesicle.order=8"})}, {"a", "b", "c"}) ==
         Names{"order = 12", "order = 8, b", "order = 8, c"});
 }
 
 TEST_CASE("a poster beyond the end of the scene is refused", "[scene]") {
-  CHECK_THAT(error_of(good + "[movie]\nposter = 2.5\n"), Contains("s.toml:16:10: 'poster' must be at most time.end, 2, not 2.5"));
+  CHECK_THAT(error_of(good + "[movie]\nposter = 2.5\n"),
+             Contains("s.toml:16:10: 'poster' must be at most time.end, 2, not 2.5"));
   CHECK_THAT(error_of(good + "[movie]\nposter = 2.00001\n"), Contains("at most time.end, 2, not 2.00001"));
   CHECK(parse_scene(good + "[movie]\nposter = 2\n", "s.toml", ".").movie.poster == 2.0);
 }

@@ -78,7 +78,8 @@ app::Motion motion_under(double end, int n, Angle angle) {
 TEST_CASE("the motion of a vesicle is told from its inclination, where the run is long enough") {
   using app::Motion;
   CHECK(motion_under(20, 40, [](double) { return 24.0; }) == Motion::tank_treading);
-  CHECK(motion_under(20, 40, [](double t) { return 24 - 60 * std::exp(-t); }) == Motion::tank_treading);  // 0.08 degrees are left
+  CHECK(motion_under(20, 40, [](double t) { return 24 - 60 * std::exp(-t); }) ==
+        Motion::tank_treading);  // 0.08 degrees are left
   CHECK(motion_under(60, 300, [](double t) { return 5 + 20 * std::sin(t); }) == Motion::swinging);
   CHECK(motion_under(40, 200, [](double t) { return -std::fmod(10 * t, 180.0); }) == Motion::tumbling);  // with jumps
   // Jeffery's ellipsoid of ratio 4: tan θ = r tan(-t r / (r² + 1)), a turn of 180 degrees in π (r + 1/r) = 13.4.
@@ -95,8 +96,8 @@ TEST_CASE("the motion of a vesicle is told from its inclination, where the run i
 }
 
 TEST_CASE("in the figure of tank-treading what has not settled is marked, joined to no curve, and named") {
-  const auto plots = app::tank_treading_plots({{0.85, 1, 0.134, 0.36}, {0.9, 1, 0.16, 0.4, app::Motion::untold},
-                                               {0.93, 1, 0.17, 0.42}, {0.95, 1, 0.18, 0.44}});
+  const auto plots = app::tank_treading_plots(
+      {{0.85, 1, 0.134, 0.36}, {0.9, 1, 0.16, 0.4, app::Motion::untold}, {0.93, 1, 0.17, 0.42}, {0.95, 1, 0.18, 0.44}});
   for (const render::Plot& plot : plots) {
     std::size_t marked = 0;
     for (const render::Curve& curve : plot.curves) {

@@ -1,5 +1,5 @@
-// Cost of one frame and of its parts. The limit: 220 ms of processor time for two vesicles at 1080p, opaque, from the saved
-// state to the PNG file.
+// Cost of one frame and of its parts. The limit: 220 ms of processor time for two vesicles at 1080p, opaque, from the
+// saved state to the PNG file.
 #include "render/draw/depth_order.h"
 #include "render/draw/draw.h"
 #include "render/scene/arrow_net.h"
@@ -13,8 +13,9 @@
 namespace {
 
 sim::State pair() {
-  return surfaces::state_of({surfaces::disc(surfaces::turn(-35, {0, 1, 0}) * surfaces::turn(23, {1, 0, 0}), {-1.25, 0, 0.5}),
-                             surfaces::ellipsoid({0.82, 0.82, 1.5}, surfaces::turn(66, {0, 1, 0}), {1.25, 0, -0.5})});
+  return surfaces::state_of(
+      {surfaces::disc(surfaces::turn(-35, {0, 1, 0}) * surfaces::turn(23, {1, 0, 0}), {-1.25, 0, 0.5}),
+       surfaces::ellipsoid({0.82, 0.82, 1.5}, surfaces::turn(66, {0, 1, 0}), {1.25, 0, -0.5})});
 }
 
 render::Frame frame(int width, int height, const char* style) {
@@ -56,7 +57,8 @@ void tracers(benchmark::State& state) {
 
 void downsampling(benchmark::State& state) {
   render::Image samples(3840, 2160, 4);
-  for (std::size_t k = 0; k < samples.pixels.size(); ++k) samples.pixels[k] = static_cast<std::uint8_t>(k * 2654435761U >> 24);
+  for (std::size_t k = 0; k < samples.pixels.size(); ++k)
+    samples.pixels[k] = static_cast<std::uint8_t>(k * 2654435761U >> 24);
   for (auto _ : state) benchmark::DoNotOptimize(render::downsample(samples, 2, render::RowOrder::bottom_first));
 }
 

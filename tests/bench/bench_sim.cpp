@@ -1,5 +1,5 @@
-// Cost of the parts of a step and of the whole. The limits: a step of one vesicle with viscosity contrast 10 takes at most
-// 5 ms at order 8 and 80 ms at order 16, on one core.
+// Cost of the parts of a step and of the whole. The limits: a step of one vesicle with viscosity contrast 10 takes at
+// most 5 ms at order 8 and 80 ms at order 16, on one core.
 #include "sim/suspension/placements.h"
 #include "tests/sim/surfaces.h"
 
@@ -68,8 +68,8 @@ void fourier_fftw(benchmark::State& state) {
   Matrix scratch(nlat, nlon), points(nlat, nlon);
   const fftw_iodim dimension{nlon, nlat, nlat}, many{nlat, 1, 1};
   const fftw_r2r_kind kind = FFTW_HC2R;
-  const fftw_plan plan = fftw_plan_guru_r2r(1, &dimension, 1, &many, scratch.data(), points.data(), &kind,
-                                            FFTW_ESTIMATE | FFTW_UNALIGNED);
+  const fftw_plan plan =
+      fftw_plan_guru_r2r(1, &dimension, 1, &many, scratch.data(), points.data(), &kind, FFTW_ESTIMATE | FFTW_UNALIGNED);
   for (auto _ : state) {
     scratch.setZero();
     scratch.col(0) = spectrum.col(0);
@@ -175,7 +175,8 @@ void suspension_product(benchmark::State& state) {
     for (std::size_t j = 0; j < x.size(); ++j)
       if (int(j) != group.surface) pairs += double(group.points.rows()) * double((*w.far.sources)[j].area.size());
   for (const PairPlan& pair : w.pairs)
-    pairs += double(pair.fine.size()) * (double(w.sources[pair.source].area.size()) - double((*w.far.sources)[pair.source].area.size()));
+    pairs += double(pair.fine.size()) *
+             (double(w.sources[pair.source].area.size()) - double((*w.far.sources)[pair.source].area.size()));
   for (auto _ : state) benchmark::DoNotOptimize(induced_velocity(w, densities));
   state.counters["pairs"] = benchmark::Counter(pairs, benchmark::Counter::kIsIterationInvariantRate);
 }

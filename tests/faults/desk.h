@@ -16,7 +16,8 @@ using support::Outcome;
 inline std::string scene(const std::string& end, const std::string& more = {}) {
   return "title = \"small\"\n[flow]\nkind = \"shear\"\n[time]\nend = " + end +
          "\nstep = 0.1\n[[vesicle]]\nshape = \"prolate\"\nreduced_volume = 0.9\norder = 4\n"
-         "[view]\nsize = [64, 48]\nsupersampling = 1\n" + more;
+         "[view]\nsize = [64, 48]\nsupersampling = 1\n" +
+         more;
 }
 
 struct Desk : support::TemporaryFolder {

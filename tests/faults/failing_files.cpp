@@ -1,6 +1,6 @@
-// Counts the changes that the program makes to regular files, and at the one whose number is in TANKTREAD_FAIL_AT does what
-// TANKTREAD_FAIL_HOW says: `kill` before it, `torn` (half of a write, then kill), or let it fail `once` for want of space.
-// Without a number it writes the count into the file TANKTREAD_FAIL_COUNT at the end.
+// Counts the changes that the program makes to regular files, and at the one whose number is in TANKTREAD_FAIL_AT does
+// what TANKTREAD_FAIL_HOW says: `kill` before it, `torn` (half of a write, then kill), or let it fail `once` for want
+// of space. Without a number it writes the count into the file TANKTREAD_FAIL_COUNT at the end.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -51,7 +51,7 @@ auto changed(F&& call) {
 }
 
 bool regular(int fd) {
-  struct stat status{};
+  struct stat status {};
   return fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
 }
 
@@ -85,11 +85,13 @@ ssize_t write(int fd, const void* bytes, size_t size) {
   return written(fd, size, [&](size_t n) { return real<ssize_t(int, const void*, size_t)>("write")(fd, bytes, n); });
 }
 ssize_t pwrite(int fd, const void* bytes, size_t size, off_t at) {
-  return written(fd, size, [&](size_t n) { return real<ssize_t(int, const void*, size_t, off_t)>("pwrite")(fd, bytes, n, at); });
+  return written(fd, size,
+                 [&](size_t n) { return real<ssize_t(int, const void*, size_t, off_t)>("pwrite")(fd, bytes, n, at); });
 }
 ssize_t pwrite64(int fd, const void* bytes, size_t size, off64_t at) {
-  return written(fd, size,
-                 [&](size_t n) { return real<ssize_t(int, const void*, size_t, off64_t)>("pwrite64")(fd, bytes, n, at); });
+  return written(fd, size, [&](size_t n) {
+    return real<ssize_t(int, const void*, size_t, off64_t)>("pwrite64")(fd, bytes, n, at);
+  });
 }
 int ftruncate(int fd, off_t size) noexcept {
   return changed([&] { return real<int(int, off_t)>("ftruncate")(fd, size); });

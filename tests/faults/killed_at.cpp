@@ -43,7 +43,7 @@ F real(const char* name) {
 
 /// Streams and pipes are no results.
 bool is_file(int descriptor) {
-  struct stat status{};
+  struct stat status {};
   return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
@@ -74,10 +74,13 @@ int whole(Call&& call) {
 extern "C" {
 
 __attribute__((constructor)) void killed_at_begin() {
-  if (std::strcmp(program_invocation_short_name, "tanktread") != 0 && std::strcmp(program_invocation_short_name, "exe") != 0) return;
+  if (std::strcmp(program_invocation_short_name, "tanktread") != 0 &&
+      std::strcmp(program_invocation_short_name, "exe") != 0)
+    return;
   watching = true;
   if (const char* text = std::getenv("KILL_AT")) wanted = std::atol(text);
-  if (const char* text = std::getenv("KILL_HOW")) how = !std::strcmp(text, "torn") ? How::torn : !std::strcmp(text, "after") ? How::after : How::before;
+  if (const char* text = std::getenv("KILL_HOW"))
+    how = !std::strcmp(text, "torn") ? How::torn : !std::strcmp(text, "after") ? How::after : How::before;
   count_file = std::getenv("COUNT_TO");
 }
 

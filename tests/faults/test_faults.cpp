@@ -1,5 +1,5 @@
-// Faults other than kills: full disks, closed doors, damaged and foreign files, missing helpers. Nothing is lost, nothing is
-// left half-written, and one sentence says what is wrong.
+// Faults other than kills: full disks, closed doors, damaged and foreign files, missing helpers. Nothing is lost,
+// nothing is left half-written, and one sentence says what is wrong.
 #include "desk.h"
 #include "render/image/image.h"
 #include "sim/trajectory/trajectory.h"
@@ -24,7 +24,8 @@ bool may_mount(const Desk& desk) {
 
 }  // namespace
 
-TEST_CASE("a disk that fills up in the middle of a simulation costs no state, and the run goes on afterwards", "[faults]") {
+TEST_CASE("a disk that fills up in the middle of a simulation costs no state, and the run goes on afterwards",
+          "[faults]") {
   const Desk desk(scene("1000"));
   fs::create_directory(desk / "disk");
   if (!may_mount(desk)) return;
@@ -118,11 +119,13 @@ TEST_CASE("an output folder that cannot be written is told before any work is do
     places.push_back(desk.file("closed/x"));
   }
   for (const std::string& place : places)
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"run", desk.file("s.toml"), "-o", place}, {"simulate", desk.file("s.toml"), "-o", place + "/t.h5"},
-          {"render", desk.file("t.h5"), "-o", place}, {"figure", "time-series", desk.file("t.h5"), "-o", place + "/f"},
-          {"export", desk.file("t.h5"), "--csv", place + "/t.csv"}, {"export", desk.file("t.h5"), "--vtk", place},
-          {"export", desk.file("t.h5"), "--ply", place}}) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"run", desk.file("s.toml"), "-o", place},
+                                                  {"simulate", desk.file("s.toml"), "-o", place + "/t.h5"},
+                                                  {"render", desk.file("t.h5"), "-o", place},
+                                                  {"figure", "time-series", desk.file("t.h5"), "-o", place + "/f"},
+                                                  {"export", desk.file("t.h5"), "--csv", place + "/t.csv"},
+                                                  {"export", desk.file("t.h5"), "--vtk", place},
+                                                  {"export", desk.file("t.h5"), "--ply", place}}) {
       const Outcome o = desk(words);
       INFO(words[0] << " " << place << ": " << o.err);
       CHECK(o.status == 1);
@@ -142,13 +145,15 @@ TEST_CASE("a trajectory truncated at any byte is refused whole and left as it is
     support::write_file(desk / "cut.h5", whole.substr(0, size));
     const std::string message = support::message_of([&] { sim::TrajectoryReader reader(desk / "cut.h5"); });
     INFO(size << " of " << whole.size() << ": " << message);
-    REQUIRE_THAT(message, Contains("cut.h5") && (Contains("cut short") || Contains("no HDF5 file") || Contains("damaged")));
+    REQUIRE_THAT(message,
+                 Contains("cut.h5") && (Contains("cut short") || Contains("no HDF5 file") || Contains("damaged")));
     ++cuts;
   }
   WARN(cuts << " truncations");
   support::write_file(desk / "cut.h5", whole.substr(0, whole.size() - 1));
   for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"info", desk.file("cut.h5")}, {"render", desk.file("cut.h5"), "-o", desk.file("out")},
+       {std::vector<std::string>{"info", desk.file("cut.h5")},
+        {"render", desk.file("cut.h5"), "-o", desk.file("out")},
         {"simulate", desk.file("s.toml"), "-o", desk.file("cut.h5"), "--resume"}}) {
     const Outcome o = desk(words);
     CHECK(o.status == 1);
@@ -161,10 +166,12 @@ TEST_CASE("a trajectory truncated at any byte is refused whole and left as it is
 TEST_CASE("a scene that changed between run and resume is refused and changes nothing", "[faults]") {
   const Desk desk;
   REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"}).status == 0);
-  const std::string before = support::read_file(desk / "out/trajectory.h5"), scene = support::read_file(desk / "out/scene.toml");
+  const std::string before = support::read_file(desk / "out/trajectory.h5"),
+                    scene = support::read_file(desk / "out/scene.toml");
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"run", desk.file("s.toml"), "-o", desk.file("out"), "--set", "flow.rate=2"},
-        {"simulate", desk.file("s.toml"), "-o", desk.file("out/trajectory.h5"), "--resume", "--set", "vesicle.order=5"}}) {
+        {"simulate", desk.file("s.toml"), "-o", desk.file("out/trajectory.h5"), "--resume", "--set",
+         "vesicle.order=5"}}) {
     const Outcome o = desk(words);
     CHECK(o.status == 1);
     CHECK(one_sentence(o.err));
@@ -178,7 +185,8 @@ TEST_CASE("a second process that would write into the same folder or file refuse
   const Desk desk(scene("100000"));
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("short.h5"), "--steps", "3", "-q"}).status == 0);
   const Desk other;  // the first one's words go elsewhere
-  const pid_t first = support::start(other, {TANKTREAD_PROGRAM, "run", desk.file("s.toml"), "-o", desk.file("out"), "-q"});
+  const pid_t first =
+      support::start(other, {TANKTREAD_PROGRAM, "run", desk.file("s.toml"), "-o", desk.file("out"), "-q"});
   REQUIRE(support::wait_for(desk / "out/trajectory.h5"));
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"run", desk.file("s.toml"), "-o", desk.file("out")},
@@ -196,20 +204,26 @@ TEST_CASE("a second process that would write into the same folder or file refuse
   kill(first, SIGINT);
   CHECK(support::finish(other, first).status == 130);
   CHECK(sim::TrajectoryReader(desk / "out/trajectory.h5").damaged().empty());
-  CHECK(desk.names("out") == std::set<std::string>{".tanktread.files", "scene.toml", "trajectory.h5"});  // no lock is left
+  CHECK(desk.names("out") ==
+        std::set<std::string>{".tanktread.files", "scene.toml", "trajectory.h5"});  // no lock is left
 }
 
 TEST_CASE("clocks that jump change neither the trajectory nor the frames", "[faults]") {
   const Desk desk(scene("5"));
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("a.h5"), "-q"}).status == 0);
-  REQUIRE(desk.with(preload("jumping_clock"), {"simulate", desk.file("s.toml"), "-o", desk.file("b.h5"), "-q", "--steps", "20"}).status == 0);
-  REQUIRE(desk.with(preload("jumping_clock"), {"simulate", desk.file("s.toml"), "-o", desk.file("b.h5"), "-q", "--resume"}).status == 0);
+  REQUIRE(desk.with(preload("jumping_clock"),
+                    {"simulate", desk.file("s.toml"), "-o", desk.file("b.h5"), "-q", "--steps", "20"})
+              .status == 0);
+  REQUIRE(
+      desk.with(preload("jumping_clock"), {"simulate", desk.file("s.toml"), "-o", desk.file("b.h5"), "-q", "--resume"})
+          .status == 0);
   CHECK(support::read_file(desk / "a.h5") == support::read_file(desk / "b.h5"));
 }
 
 TEST_CASE("Ctrl-C twice ends at once and loses no state", "[faults]") {
   const Desk desk(scene("100000", ""));
-  const pid_t child = support::start(desk, {TANKTREAD_PROGRAM, "simulate", desk.file("s.toml"), "-o", desk.file("t.h5")});
+  const pid_t child =
+      support::start(desk, {TANKTREAD_PROGRAM, "simulate", desk.file("s.toml"), "-o", desk.file("t.h5")});
   REQUIRE(support::wait_for(desk / "t.h5"));
   usleep(100000);
   kill(child, SIGINT);
@@ -219,13 +233,15 @@ TEST_CASE("Ctrl-C twice ends at once and loses no state", "[faults]") {
   const std::int64_t states = sim::TrajectoryReader(desk / "t.h5").count();
   CHECK(sim::TrajectoryReader(desk / "t.h5").damaged().empty());
   const std::string steps = std::to_string(states + 20);
-  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--resume", "--steps", steps, "-q"}).status == 0);
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--resume", "--steps", steps, "-q"}).status ==
+          0);
   CHECK(sim::TrajectoryReader(desk / "t.h5").count() == states + 21);
 }
 
 TEST_CASE("closed, full and broken standard streams cost no result", "[faults]") {
   const Desk desk;
-  for (const char* streams : {">&-", ">&- 2>&-", "<&- >&- 2>&-", ">/dev/full", ">/dev/full 2>/dev/full", "2>&1 | true"}) {
+  for (const char* streams :
+       {">&-", ">&- 2>&-", "<&- >&- 2>&-", ">/dev/full", ">/dev/full 2>/dev/full", "2>&1 | true"}) {
     const Outcome o = desk.shell(std::string("$T run s.toml -o out ") + streams);
     INFO(streams);
     CHECK(desk.names("out").count("frames/000005.png") == 1);
@@ -247,7 +263,8 @@ TEST_CASE("an ffmpeg that dies in the middle costs the movie and nothing else", 
   for (const std::string last : {"kill -9 $$", "exit 1", "exit 0"}) {
     support::write_file(desk / "bin/ffmpeg", "#!/bin/sh\nhead -c 20000 >/dev/null\n" + last + "\n");
     fs::permissions(desk / "bin/ffmpeg", fs::perms::owner_all);
-    const Outcome o = desk.with({"PATH=" + desk.file("bin") + ":/usr/bin:/bin"}, {"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"});
+    const Outcome o = desk.with({"PATH=" + desk.file("bin") + ":/usr/bin:/bin"},
+                                {"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"});
     INFO(last << ": " << o.err);
     CHECK(o.status == 1);
     CHECK(one_sentence(o.err));
@@ -266,8 +283,10 @@ TEST_CASE("a movie and a poster of earlier pictures never pass as those of the p
   const std::vector<std::string> plain{"run", desk.file("s.toml"), "-o", desk.file("out"), "-q"};
   std::vector<std::string> outline = plain;
   outline.insert(outline.end(), {"--set", "view.style=outline"});
-  REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("whole"), "-q", "--set", "view.style=outline"}).status == 0);
-  const std::string movie = support::read_file(desk / "whole/movie.mp4"), poster = support::read_file(desk / "whole/poster.png");
+  REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("whole"), "-q", "--set", "view.style=outline"}).status ==
+          0);
+  const std::string movie = support::read_file(desk / "whole/movie.mp4"),
+                    poster = support::read_file(desk / "whole/poster.png");
   fs::create_directory(desk / "bin");
   const auto with_ffmpeg = [&](const std::string& last) {
     support::write_file(desk / "bin/ffmpeg", "#!/bin/sh\ncat >/dev/null\n" + last + "\n");
@@ -289,7 +308,8 @@ TEST_CASE("a movie and a poster of earlier pictures never pass as those of the p
   // Killed between the last frame and the end of the movie.
   fs::remove_all(desk / "out");
   REQUIRE(desk(plain).status == 0);
-  std::vector<std::string> words{"/usr/bin/env", with_ffmpeg("touch " + desk.file("all-read") + "; exec sleep 1000"), TANKTREAD_PROGRAM};
+  std::vector<std::string> words{"/usr/bin/env", with_ffmpeg("touch " + desk.file("all-read") + "; exec sleep 1000"),
+                                 TANKTREAD_PROGRAM};
   words.insert(words.end(), outline.begin(), outline.end());
   const pid_t child = support::start(desk, words);
   const bool waits = support::wait_for(desk / "all-read");
@@ -323,14 +343,17 @@ TEST_CASE("pictures do not depend on the fonts that are installed", "[faults]") 
   const Desk desk(scene("0.2", "time_stamp = true\ncaption = true\nscale_bar = true\n"));
   REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("a"), "-q"}).status == 0);
   fs::create_directory(desk / "home");
-  REQUIRE(desk.with({"FONTCONFIG_FILE=/dev/null", "FONTCONFIG_PATH=/nonexistent", "HOME=" + desk.file("home"), "XDG_DATA_HOME=/nonexistent"},
-                    {"run", desk.file("s.toml"), "-o", desk.file("b"), "-q"}).status == 0);
+  REQUIRE(desk.with({"FONTCONFIG_FILE=/dev/null", "FONTCONFIG_PATH=/nonexistent", "HOME=" + desk.file("home"),
+                     "XDG_DATA_HOME=/nonexistent"},
+                    {"run", desk.file("s.toml"), "-o", desk.file("b"), "-q"})
+              .status == 0);
   CHECK(support::read_file(desk / "a/frames/000002.png") == support::read_file(desk / "b/frames/000002.png"));
 }
 
 TEST_CASE("a locale with decimal commas changes no number that is read or written", "[faults]") {
   const Desk desk(scene("0.3", "[[figure]]\nkind = \"time-series\"\n"));
-  const bool german = desk.shell("localedef -i de_DE -f UTF-8 ./de_DE.UTF-8 2>/dev/null").status <= 1 && fs::exists(desk / "de_DE.UTF-8");
+  const bool german = desk.shell("localedef -i de_DE -f UTF-8 ./de_DE.UTF-8 2>/dev/null").status <= 1 &&
+                      fs::exists(desk / "de_DE.UTF-8");
   if (!german) WARN("the locale de_DE.UTF-8 cannot be made here; only LC_ALL is set");
   std::vector<std::string> commas = preload("foreign_locale");
   commas.insert(commas.end(), {"LC_ALL=de_DE.UTF-8", "LOCPATH=" + desk.path().string()});
@@ -342,7 +365,8 @@ TEST_CASE("a locale with decimal commas changes no number that is read or writte
   REQUIRE(desk.with(commas, {"export", desk.file("b/trajectory.h5"), "--csv", desk.file("b.csv")}).status == 0);
   CHECK(support::read_file(desk / "a.csv") == support::read_file(desk / "b.csv"));
   for (const char* name : {"scene.toml", "trajectory.h5", "time-series.csv", "time-series.svg", "frames/000002.png"})
-    CHECK(support::read_file(desk / (std::string("a/") + name)) == support::read_file(desk / (std::string("b/") + name)));
+    CHECK(support::read_file(desk / (std::string("a/") + name)) ==
+          support::read_file(desk / (std::string("b/") + name)));
   CHECK(desk.with(commas, {"compare", desk.file("a/frames"), desk.file("b/frames"), "--rmse", "0.15"}).status == 0);
 }
 

@@ -6,11 +6,11 @@
 
 #include <sys/stat.h>
 
-#include "tests/support/catch.h"
 #include <fmt/format.h>
 #include <cmath>
 #include <csignal>
 #include <limits>
+#include "tests/support/catch.h"
 
 using namespace faults;
 using Catch::Contains;
@@ -33,7 +33,9 @@ const Desk& original() {
   return desk;
 }
 
-void copy_original(const fs::path& to) { fs::copy_file(original().file("t.h5"), to, fs::copy_options::overwrite_existing); }
+void copy_original(const fs::path& to) {
+  fs::copy_file(original().file("t.h5"), to, fs::copy_options::overwrite_existing);
+}
 
 /// The file with edits that HDF5 makes in it.
 template <class Edit>
@@ -121,10 +123,12 @@ TEST_CASE("an attribute of another type or extent is refused before a byte of it
         const hid_t type = kind == 1   ? support::text_of_bytes(H5T_VARIABLE)
                            : kind == 2 ? support::text_of_bytes(9)
                            : kind == 3 ? H5Tarray_create2(H5T_STD_I64LE, 1, eight)
-                           : kind == 4 ? H5Tcopy(H5T_IEEE_F64LE) : H5Tcopy(H5T_STD_I64LE);
+                           : kind == 4 ? H5Tcopy(H5T_IEEE_F64LE)
+                                       : H5Tcopy(H5T_STD_I64LE);
         const hid_t space = kind == 0   ? H5Screate_simple(1, eight, nullptr)
                             : kind == 2 ? H5Screate_simple(1, many, nullptr)
-                            : kind == 5 ? H5Screate_simple(1, one, nullptr) : H5Screate(H5S_SCALAR);
+                            : kind == 5 ? H5Screate_simple(1, one, nullptr)
+                                        : H5Screate(H5S_SCALAR);
         support::replace_attribute(file, name, type, space);
         H5Tclose(type);
         H5Sclose(space);
@@ -218,9 +222,11 @@ TEST_CASE("named pipes, devices and folders are refused when they are opened", "
       CHECK(one_sentence(outcome.err));
     }
   }
-  for (const char* tables : {"shape = \"file\"\nfile = \"pipe\"\n", "shape = \"file\"\nfile = \"/dev/zero\"\n",
-                             "shape = \"prolate\"\nreduced_volume = 0.9\n[placement]\nkind = \"file\"\nfile = \"pipe\"\n"}) {
-    support::write_file(desk / "shape.toml", "[flow]\nkind = \"shear\"\n[time]\nend = 1\n[[vesicle]]\norder = 4\n" + std::string(tables));
+  for (const char* tables :
+       {"shape = \"file\"\nfile = \"pipe\"\n", "shape = \"file\"\nfile = \"/dev/zero\"\n",
+        "shape = \"prolate\"\nreduced_volume = 0.9\n[placement]\nkind = \"file\"\nfile = \"pipe\"\n"}) {
+    support::write_file(desk / "shape.toml",
+                        "[flow]\nkind = \"shear\"\n[time]\nend = 1\n[[vesicle]]\norder = 4\n" + std::string(tables));
     const Outcome outcome = desk({"simulate", desk.file("shape.toml"), "-o", desk.file("x")});
     INFO(tables << ": " << outcome.err);
     CHECK(outcome.status == 1);
@@ -284,7 +290,9 @@ TEST_CASE("a forged resume record ends --resume with one sentence, and the file 
   const Change changes[] = {
       [](sim::Dynamics& d) { d.vesicles[0].history.levels.at(0).position.order = 1'000'000; },
       [](sim::Dynamics& d) { d.vesicles[0].position.order = 1'000'000; },
-      [](sim::Dynamics& d) { d.vesicles[0].history.levels.at(0).position = {1, sim::Matrix::Zero(4, 3)}; },
+      [](sim::Dynamics& d) {
+        d.vesicles[0].history.levels.at(0).position = {1, sim::Matrix::Zero(4, 3)};
+      },
       [](sim::Dynamics& d) { d.vesicles[0].upsampling = 1000; },
       [](sim::Dynamics& d) { d.vesicles[0].position.values(0, 0) = std::numeric_limits<double>::quiet_NaN(); },
       [](sim::Dynamics& d) { d.vesicles[0].tracers.resize(0, 3); },
@@ -301,7 +309,8 @@ TEST_CASE("a forged resume record ends --resume with one sentence, and the file 
     change(d);
     set_record(desk.file("t.h5"), sim::serialised(d));
     const std::string before = support::read_file(desk / "t.h5");
-    const Outcome outcome = desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--resume", "-q", "--set", "time.end=2"});
+    const Outcome outcome =
+        desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "--resume", "-q", "--set", "time.end=2"});
     INFO("change " << number++ << ": " << outcome.err);
     CHECK(outcome.status == 1);
     CHECK(one_sentence(outcome.err));
@@ -319,7 +328,10 @@ TEST_CASE("a state whose checksum fits but whose numbers do not is told as damag
     const char* dataset;
     std::uint64_t value;
   };
-  for (const auto& [dataset, value] : {Forgery{"order", 24}, {"order", 5}, {"label_order", 25}, {"order", ~std::uint64_t{0}},
+  for (const auto& [dataset, value] : {Forgery{"order", 24},
+                                       {"order", 5},
+                                       {"label_order", 25},
+                                       {"order", ~std::uint64_t{0}},
                                        {"position", std::bit_cast<std::uint64_t>(inf)},
                                        {"tension", std::bit_cast<std::uint64_t>(1e200)},
                                        {"tracers", std::bit_cast<std::uint64_t>(std::nan(""))},
@@ -339,7 +351,8 @@ TEST_CASE("a state whose checksum fits but whose numbers do not is told as damag
   }
   copy_original(path);
   set_number(path, "time", 4, 0.1);
-  CHECK_THAT(message_of([&] { sim::TrajectoryReader reader(path); }), Contains("state 4") && Contains("its time is not later"));
+  CHECK_THAT(message_of([&] { sim::TrajectoryReader reader(path); }),
+             Contains("state 4") && Contains("its time is not later"));
 }
 
 TEST_CASE("a scene that is not that of the states is told by every command that reads both", "[hostile]") {
@@ -354,9 +367,10 @@ TEST_CASE("a scene that is not that of the states is told by every command that 
     state.vesicles.push_back(state.vesicles.front());
     sim::TrajectoryWriter::create(desk.file("two.h5"), layout, one.header(), state, one.resume_payload());
   }
-  for (const auto& command : std::vector<std::vector<std::string>>{{"render", desk.file("two.h5"), "-o", desk.file("x")},
-                                                                   {"figure", "time-series", desk.file("two.h5"), "-o", desk.file("x")},
-                                                                   {"simulate", desk.file("s.toml"), "-o", desk.file("two.h5"), "--resume"}}) {
+  for (const auto& command : std::vector<std::vector<std::string>>{
+           {"render", desk.file("two.h5"), "-o", desk.file("x")},
+           {"figure", "time-series", desk.file("two.h5"), "-o", desk.file("x")},
+           {"simulate", desk.file("s.toml"), "-o", desk.file("two.h5"), "--resume"}}) {
     const Outcome outcome = desk(command);
     INFO(command[0] << ": " << outcome.err);
     CHECK(outcome.status == 1);
@@ -370,7 +384,8 @@ TEST_CASE("control characters from files reach neither a terminal nor a comment"
   text.replace(text.find("small"), 5, escape);
   const Desk desk(text);
   const auto harmless = [](const std::string& shown) {
-    return std::none_of(shown.begin(), shown.end(), [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f; }) &&
+    return std::none_of(shown.begin(), shown.end(),
+                        [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f; }) &&
            shown.find("\xc2\x9b") == std::string::npos;
   };
   const Outcome dry = desk({"run", desk.file("s.toml"), "-o", desk.file("x"), "--dry-run"});
@@ -419,7 +434,8 @@ TEST_CASE("files of other kinds, empty ones and beginnings are called what they 
   CHECK_THAT(said({"render", desk.file("empty"), "-o", desk.file("x")}), Contains("it is empty"));
   CHECK_THAT(said({"info", desk.file("five")}), Contains("is cut short: only 5 bytes"));
   CHECK_THAT(said({"info", desk.file("cut")}), Contains("is cut short: only"));
-  CHECK_THAT(said({"run", desk.file("t.h5"), "-o", desk.file("x")}), Contains("is a trajectory") && Contains("not a scene"));
+  CHECK_THAT(said({"run", desk.file("t.h5"), "-o", desk.file("x")}),
+             Contains("is a trajectory") && Contains("not a scene"));
 }
 
 TEST_CASE("a run killed at any change of a file ends with the bytes of an uninterrupted one", "[hostile]") {
@@ -479,7 +495,8 @@ TEST_CASE("a change of a file that fails once is told, and never crashes or pass
 
 TEST_CASE("no file of the fuzz corpus harms the program, whatever opens it", "[hostile]") {
   const Desk desk(scene("1"));
-  const char* const pipe = "/tmp/tanktread-fuzz-pipe";  // some of the corpus lead there; whoever opens it never comes back
+  const char* const pipe =
+      "/tmp/tanktread-fuzz-pipe";  // some of the corpus lead there; whoever opens it never comes back
   const bool made = ::mkfifo(pipe, 0600) == 0;
   int runs = 0;
   const auto harmless = [&](std::vector<std::string> words) {
@@ -493,7 +510,8 @@ TEST_CASE("no file of the fuzz corpus harms the program, whatever opens it", "[h
   };
   std::vector<fs::path> trajectories, scenes, shapes, pictures;
   const fs::path corpus = TANKTREAD_CORPUS;
-  for (const auto& [folder, list] : {std::pair{"trajectory", &trajectories}, {"scene", &scenes}, {"shape", &shapes}, {"png", &pictures}})
+  for (const auto& [folder, list] :
+       {std::pair{"trajectory", &trajectories}, {"scene", &scenes}, {"shape", &shapes}, {"png", &pictures}})
     for (const auto& entry : fs::directory_iterator(corpus / folder)) list->push_back(entry.path());
   REQUIRE((trajectories.size() > 2 && scenes.size() > 10 && shapes.size() > 1 && pictures.size() > 5));
   for (const fs::path& file : trajectories) {
@@ -513,8 +531,10 @@ TEST_CASE("no file of the fuzz corpus harms the program, whatever opens it", "[h
     harmless({"info", desk.file("s.toml"), "--set", support::read_file(file).substr(0, 2000)});
   }
   for (const fs::path& file : shapes) {
-    support::write_file(desk / "shape.toml", "[flow]\nkind = \"shear\"\n[time]\nend = 0.1\n[[vesicle]]\norder = 4\nshape = \"file\"\n"
-                                             "file = \"" + file.string() + "\"\n");
+    support::write_file(desk / "shape.toml",
+                        "[flow]\nkind = \"shear\"\n[time]\nend = 0.1\n[[vesicle]]\norder = 4\nshape = \"file\"\n"
+                        "file = \"" +
+                            file.string() + "\"\n");
     harmless({"simulate", desk.file("shape.toml"), "-o", desk.file("shape.h5"), "--force", "-q", "--steps", "1"});
   }
   for (const fs::path& file : pictures) {

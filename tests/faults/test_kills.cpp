@@ -13,8 +13,8 @@ namespace {
 
 constexpr int wanted_kills = 50;
 
-/// Starts the command again and again and kills it after a random time, until there have been enough kills; `check` looks at
-/// what is left each time, `done` when the command came to its end, after which everything starts over.
+/// Starts the command again and again and kills it after a random time, until there have been enough kills; `check`
+/// looks at what is left each time, `done` when the command came to its end, after which everything starts over.
 template <class Check, class Done>
 void kill_often(const Desk& desk, const std::vector<std::string>& words, int longest_ms, Check&& check, Done&& done) {
   std::mt19937 random(11);
@@ -42,7 +42,8 @@ void kill_often(const Desk& desk, const std::vector<std::string>& words, int lon
 std::map<std::string, std::string> contents(const fs::path& folder) {
   std::map<std::string, std::string> all;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file()) all[entry.path().lexically_relative(folder).string()] = support::read_file(entry.path());
+    if (entry.is_regular_file())
+      all[entry.path().lexically_relative(folder).string()] = support::read_file(entry.path());
   return all;
 }
 
@@ -94,8 +95,8 @@ TEST_CASE("processes that draw shards end with the one that started them, asked 
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
   for (const int number : {SIGTERM, SIGKILL}) {
     const std::string out = desk.file(number == SIGTERM ? "asked" : "killed");
-    const pid_t child = support::start(
-        desk, {TANKTREAD_PROGRAM, "render", desk.file("t.h5"), "-o", out, "-q", "-j", "2", "--set", "movie.time_per_frame=0.00025"});
+    const pid_t child = support::start(desk, {TANKTREAD_PROGRAM, "render", desk.file("t.h5"), "-o", out, "-q", "-j",
+                                              "2", "--set", "movie.time_per_frame=0.00025"});
     const bool drawing = support::wait_for(out + "/frames/000002.png") && support::wait_for(out + "/frames/000003.png");
     kill(child, number);
     CHECK(support::finish(desk, child).status == (number == SIGTERM ? 130 : -SIGKILL));
@@ -109,7 +110,8 @@ TEST_CASE("processes that draw shards end with the one that started them, asked 
   }
 }
 
-TEST_CASE("a rendering killed fifty times has no torn, missing or double frame, and the same movie in the end", "[faults]") {
+TEST_CASE("a rendering killed fifty times has no torn, missing or double frame, and the same movie in the end",
+          "[faults]") {
   const Desk desk(scene("3"));
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
   REQUIRE(desk({"render", desk.file("t.h5"), "-o", desk.file("whole"), "-q"}).status == 0);

@@ -1,7 +1,8 @@
-// kill -9 at every operation that changes a file, and at random moments, upon every command that writes: the next run of the same
-// command leaves the very bytes of one that was never killed, and nothing else.
+// kill -9 at every operation that changes a file, and at random moments, upon every command that writes: the next run
+// of the same command leaves the very bytes of one that was never killed, and nothing else.
 //
-// TANKTREAD_KILLS sets how many kills there are in all; a few minutes' worth without it (docs/faults.md has the long form).
+// TANKTREAD_KILLS sets how many kills there are in all; a few minutes' worth without it (docs/faults.md has the long
+// form).
 #include "desk.h"
 #include "render/image/image.h"
 #include "tests/support/catch.h"
@@ -21,15 +22,18 @@ Contents contents(const fs::path& folder) {
   Contents all;
   if (!fs::exists(folder)) return all;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    all[entry.path().lexically_relative(folder).string()] = entry.is_regular_file() ? support::read_file(entry.path()) : "a folder";
+    all[entry.path().lexically_relative(folder).string()] =
+        entry.is_regular_file() ? support::read_file(entry.path()) : "a folder";
   return all;
 }
 
 std::string difference(const Contents& a, const Contents& b) {
   std::string text;
   for (const auto& [name, bytes] : a)
-    if (!b.contains(name)) text += name + " is missing\n";
-    else if (b.at(name) != bytes) text += name + " differs\n";
+    if (!b.contains(name))
+      text += name + " is missing\n";
+    else if (b.at(name) != bytes)
+      text += name + " differs\n";
   for (const auto& [name, bytes] : b)
     if (!a.contains(name)) text += name + " is left over\n";
   return text;
@@ -51,9 +55,9 @@ void wait_until_gone(const fs::path& work) {
 
 struct Tried {
   std::string name;
-  int share;                                       ///< of all kills, percent
-  std::vector<std::string> words;                  ///< the command, in the folder `work`
-  std::function<void(const fs::path& work)> begin; ///< what is there before
+  int share;                                        ///< of all kills, percent
+  std::vector<std::string> words;                   ///< the command, in the folder `work`
+  std::function<void(const fs::path& work)> begin;  ///< what is there before
 };
 
 int wanted_kills() {
@@ -95,7 +99,7 @@ void kill_everywhere(const Desk& desk, const Tried& tried) {
   fs::remove(desk / "count");
   REQUIRE(run_in(desk, tried, counting) == 0);
   REQUIRE(difference(whole, contents(work)).empty());  // nothing depends on the time of day
-  long operations = 0;  // of the process that has most
+  long operations = 0;                                 // of the process that has most
   std::istringstream counts(support::read_file(desk / "count"));
   for (long n = 0; counts >> n;) operations = std::max(operations, n);
   REQUIRE(operations > 5);
@@ -103,7 +107,8 @@ void kill_everywhere(const Desk& desk, const Tried& tried) {
   std::mt19937 random(7);
   const int wanted = std::max(3, wanted_kills() * tried.share / 100);
   int kills = 0, by_operation = 0, ends = 0;
-  // Every operation in turn as far as the kills reach, spread evenly; each chain of up to three kills ends with a whole run.
+  // Every operation in turn as far as the kills reach, spread evenly; each chain of up to three kills ends with a whole
+  // run.
   for (int k = 0; kills < wanted; ++k) {
     begin();
     std::string history;
@@ -115,7 +120,8 @@ void kill_everywhere(const Desk& desk, const Tried& tried) {
         status = run_in(desk, tried, {}, after);
         history += "after " + std::to_string(after) + " us; ";
       } else {
-        const long at = 1 + (links == 0 ? (static_cast<long>(by_operation) * 7919) % operations : static_cast<long>(random() % static_cast<unsigned long>(operations)));
+        const long at = 1 + (links == 0 ? (static_cast<long>(by_operation) * 7919) % operations
+                                        : static_cast<long>(random() % static_cast<unsigned long>(operations)));
         const char* how = std::array{"before", "torn", "after"}[random() % 3];
         std::vector<std::string> variables = preload("killed_at");
         variables.push_back("KILL_AT=" + std::to_string(at));
@@ -141,8 +147,8 @@ void kill_everywhere(const Desk& desk, const Tried& tried) {
     const std::string wrong = difference(whole, contents(work));
     REQUIRE(wrong == "");
   }
-  WARN(tried.name << ": " << kills << " kills, " << by_operation << " of them at one of " << operations << " operations, " << ends
-                  << " runs that came to their end before");
+  WARN(tried.name << ": " << kills << " kills, " << by_operation << " of them at one of " << operations
+                  << " operations, " << ends << " runs that came to their end before");
 }
 
 /// A folder with a scene s.toml and its trajectory t.h5.
@@ -162,7 +168,8 @@ TEST_CASE("a run, killed anywhere, leaves in the end what it would have left at 
   kill_everywhere(desk, {"run", 35, {"run", "s.toml", "-o", "out", "-q"}, desk.with("s.toml")});
 }
 
-TEST_CASE("a run over earlier results, killed anywhere, leaves in the end what it would have left at once", "[faults][kills]") {
+TEST_CASE("a run over earlier results, killed anywhere, leaves in the end what it would have left at once",
+          "[faults][kills]") {
   const Workshop desk;
   REQUIRE(desk({"run", desk.file("s.toml"), "-o", desk.file("out"), "-q", "--set", "flow.rate=2"}).status == 0);
   kill_everywhere(desk, {"run --force", 15, {"run", "s.toml", "-o", "out", "-q", "--force"}, [&](const fs::path& work) {
@@ -171,7 +178,8 @@ TEST_CASE("a run over earlier results, killed anywhere, leaves in the end what i
                          }});
 }
 
-TEST_CASE("a rendering by processes, killed anywhere, leaves in the end what it would have left at once", "[faults][kills]") {
+TEST_CASE("a rendering by processes, killed anywhere, leaves in the end what it would have left at once",
+          "[faults][kills]") {
   const Workshop desk;
   kill_everywhere(desk, {"render -j 2", 15, {"render", "t.h5", "-o", "out", "-q", "-j", "2"}, desk.with("t.h5")});
 }
@@ -183,19 +191,23 @@ TEST_CASE("a figure that was killed anywhere is in the end what it would have be
 
 TEST_CASE("an export that was killed anywhere leaves in the end what it would have left at once", "[faults][kills]") {
   const Workshop desk;
-  kill_everywhere(desk, {"export", 15, {"export", "t.h5", "-q", "--csv", "t.csv", "--vtk", "v", "--ply", "p", "--latitudes", "6"},
+  kill_everywhere(desk, {"export",
+                         15,
+                         {"export", "t.h5", "-q", "--csv", "t.csv", "--vtk", "v", "--ply", "p", "--latitudes", "6"},
                          desk.with("t.h5")});
 }
 
-TEST_CASE("baselines whose renewal was killed anywhere are in the end what they would have been at once", "[faults][kills]") {
+TEST_CASE("baselines whose renewal was killed anywhere are in the end what they would have been at once",
+          "[faults][kills]") {
   const Workshop desk;
-  kill_everywhere(desk, {"compare --update", 10, {"compare", "expected", "actual", "-q", "--update"}, [](const fs::path& work) {
-                           for (const char* folder : {"expected", "actual"}) fs::create_directories(work / folder / "deep");
-                           render::Image image(24, 16, 3);
-                           for (const std::string name : {"a.png", "b.png", "deep/c.png", "deep/d.png"}) {
-                             render::write_png(work / "actual" / name, image);
-                             for (auto& value : image.pixels) value = static_cast<std::uint8_t>(value + 60);
-                             if (name != "deep/d.png") render::write_png(work / "expected" / name, image);
-                           }
-                         }});
+  kill_everywhere(
+      desk, {"compare --update", 10, {"compare", "expected", "actual", "-q", "--update"}, [](const fs::path& work) {
+               for (const char* folder : {"expected", "actual"}) fs::create_directories(work / folder / "deep");
+               render::Image image(24, 16, 3);
+               for (const std::string name : {"a.png", "b.png", "deep/c.png", "deep/d.png"}) {
+                 render::write_png(work / "actual" / name, image);
+                 for (auto& value : image.pixels) value = static_cast<std::uint8_t>(value + 60);
+                 if (name != "deep/d.png") render::write_png(work / "expected" / name, image);
+               }
+             }});
 }

@@ -1,5 +1,5 @@
-// The PNG reader: a picture of the promised size, or a sentence. Checksums of the chunks are made to fit after each mutation,
-// or hardly any would get beyond them.
+// The PNG reader: a picture of the promised size, or a sentence. Checksums of the chunks are made to fit after each
+// mutation, or hardly any would get beyond them.
 #include "render/image/image.h"
 #include "support.h"
 
@@ -12,8 +12,8 @@ namespace {
 /// Length, type, data, and the crc32 of type and data.
 void seal_chunks(std::vector<std::uint8_t>& file) {
   for (std::size_t at = 8; at + 12 <= file.size();) {
-    const std::size_t length = std::size_t{file[at]} << 24 | std::size_t{file[at + 1]} << 16 | std::size_t{file[at + 2]} << 8 |
-                               std::size_t{file[at + 3]};
+    const std::size_t length = std::size_t{file[at]} << 24 | std::size_t{file[at + 1]} << 16 |
+                               std::size_t{file[at + 2]} << 8 | std::size_t{file[at + 3]};
     if (length > file.size() - at - 12) return;
     const uLong sum = crc32_z(0, file.data() + at + 4, length + 4);
     for (std::size_t i = 0; i < 4; ++i) file[at + 8 + length + i] = static_cast<std::uint8_t>(sum >> (24 - 8 * i));
@@ -36,7 +36,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
                           static_cast<std::size_t>(image.channels);
     if (image.pixels.size() != expected || (image.channels != 3 && image.channels != 4))
       fuzz::broken("a picture has width x height x 3 or 4 bytes");
-    if (!read.lower_bytes.empty() && read.lower_bytes.size() != expected) fuzz::broken("each sample has a lower byte, or none has");
+    if (!read.lower_bytes.empty() && read.lower_bytes.size() != expected)
+      fuzz::broken("each sample has a lower byte, or none has");
   });
   std::fclose(file);
   return 0;

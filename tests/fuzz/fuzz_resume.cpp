@@ -1,5 +1,6 @@
-// Resume records whose checksum fits. The input is a list of changes to the numbers of a whole one, most of them to those that
-// are counts and sizes. What is accepted is written again as it was, and a step can be taken from it or is refused.
+// Resume records whose checksum fits. The input is a list of changes to the numbers of a whole one, most of them to
+// those that are counts and sizes. What is accepted is written again as it was, and a step can be taken from it or is
+// refused.
 #include "sim/stepping/dynamics.h"
 #include "sim/stepping/stepper.h"
 #include "support.h"
@@ -58,22 +59,34 @@ const std::vector<std::size_t>& counts() {
 
 /// Changes of 4 bytes each: what is done, where (two bytes), and to what.
 std::vector<double> changed(const std::uint8_t* bytes, std::size_t size) {
-  constexpr double values[] = {0,    1,     -1,   2,      3,    4,       9,     25,     0.5,     1e3,      65536,
-                               1e6,  1e9,   1e18, 1e150,  1e300, 0x1p31, 0x1p32, 0x1p53, INFINITY, -INFINITY, NAN,
-                               1e-300, -0.0, 8,    1024};
+  constexpr double values[] = {0,      1,        -1,        2,   3,      4,     9,     25,     0.5,
+                               1e3,    65536,    1e6,       1e9, 1e18,   1e150, 1e300, 0x1p31, 0x1p32,
+                               0x1p53, INFINITY, -INFINITY, NAN, 1e-300, -0.0,  8,     1024};
   std::vector<double> numbers = whole();
   for (std::size_t at = 0; at + 4 <= size && !numbers.empty(); at += 4) {
     const std::size_t where = bytes[at + 1] + 256U * bytes[at + 2], kind = bytes[at];
-    const std::size_t place = std::min((kind & 0x80) ? where % numbers.size() : counts()[where % counts().size()], numbers.size() - 1);
+    const std::size_t place =
+        std::min((kind & 0x80) ? where % numbers.size() : counts()[where % counts().size()], numbers.size() - 1);
     const double value = values[bytes[at + 3] % std::size(values)];
     const auto here = numbers.begin() + static_cast<std::ptrdiff_t>(place);
     switch (kind % 8) {
-      case 0: numbers.resize(place); break;
-      case 1: numbers.erase(here); break;
-      case 2: numbers.insert(here, value); break;
-      case 3: *here += 1; break;
-      case 4: *here *= double(bytes[at + 3]) - 128; break;
-      default: *here = value;
+      case 0:
+        numbers.resize(place);
+        break;
+      case 1:
+        numbers.erase(here);
+        break;
+      case 2:
+        numbers.insert(here, value);
+        break;
+      case 3:
+        *here += 1;
+        break;
+      case 4:
+        *here *= double(bytes[at + 3]) - 128;
+        break;
+      default:
+        *here = value;
     }
   }
   return numbers;

@@ -9,12 +9,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   std::vector<std::string> changes;
   if (text.size() < input.size()) changes.push_back(input.substr(text.size() + 1));
   std::string resolved;
-  if (!fuzz::accepted([&] {
-        resolved = app::write_scene(app::parse_scene(text, "scene", ".", changes, app::SceneUse::draw));
-      }))
+  if (!fuzz::accepted(
+          [&] { resolved = app::write_scene(app::parse_scene(text, "scene", ".", changes, app::SceneUse::draw)); }))
     return 0;
   std::string again;
-  if (!fuzz::accepted([&] { again = app::write_scene(app::parse_scene(resolved, "resolved", ".", {}, app::SceneUse::draw)); }))
+  if (!fuzz::accepted(
+          [&] { again = app::write_scene(app::parse_scene(resolved, "resolved", ".", {}, app::SceneUse::draw)); }))
     fuzz::broken("a resolved scene is a scene");
   if (again != resolved) fuzz::broken("a resolved scene resolves to itself");
   return 0;

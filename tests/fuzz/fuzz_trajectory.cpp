@@ -1,6 +1,6 @@
-// Trajectory files: header and layout as HDF5 tells them, then every row. Checksums of the metadata are made to fit after
-// each mutation, or hardly any would get beyond them; those of states, steps and resume records for half of the inputs.
-// Besides bytes, types, extents, storage and links of a whole trajectory are changed by HDF5 itself.
+// Trajectory files: header and layout as HDF5 tells them, then every row. Checksums of the metadata are made to fit
+// after each mutation, or hardly any would get beyond them; those of states, steps and resume records for half of the
+// inputs. Besides bytes, types, extents, storage and links of a whole trajectory are changed by HDF5 itself.
 #include "sim/stepping/dynamics.h"
 #include "sim/trajectory/trajectory_file.h"
 #include "support.h"
@@ -57,7 +57,8 @@ void seal_metadata(std::vector<std::uint8_t>& file) {
   for (std::size_t at = 48; at + 16 < file.size() && at < (1U << 17); ++at) {
     if (std::memcmp(file.data() + at, "OHDR", 4) != 0) continue;
     const std::uint8_t flags = file[at + 5];
-    const std::size_t start = 6 + (flags & 0x20 ? 16U : 0U) + (flags & 0x10 ? 4U : 0U), width = std::size_t{1} << (flags & 3);
+    const std::size_t start = 6 + (flags & 0x20 ? 16U : 0U) + (flags & 0x10 ? 4U : 0U),
+                      width = std::size_t{1} << (flags & 3);
     std::uint64_t size = 0;
     for (std::size_t i = 0; i < width && at + start + i < file.size(); ++i)
       size |= std::uint64_t{file[at + start + i]} << (8 * i);
@@ -89,7 +90,8 @@ void seal_records(const std::filesystem::path& path) {
         const file::Place& place = map->at(column.name);
         if (bytes.size() + place.row_bytes > most_bytes) return;
         bytes.resize(bytes.size() + place.row_bytes);
-        descriptor.read(place.offset + row * place.row_bytes, bytes.data() + bytes.size() - place.row_bytes, place.row_bytes);
+        descriptor.read(place.offset + row * place.row_bytes, bytes.data() + bytes.size() - place.row_bytes,
+                        place.row_bytes);
       }
       put(checksums, row, rows::checksum(row, bytes));
     }
@@ -120,8 +122,8 @@ std::vector<std::uint8_t> whole_trajectory() {
   sim::StepRecord record{1, 0.1, 0.1, 7, 1e-11, 0, 0.5, {sim::VesicleStep{}}};
   {
     const sim::TrajectoryHeader header{"title = \"small\"\n", "0", "g++", {"a warning"}};
-    sim::TrajectoryWriter writer =
-        sim::TrajectoryWriter::create(folder / "t.h5", {1, 2, 4, 2, 4, 4, 40}, header, state, std::vector<double>(30, 1.0));
+    sim::TrajectoryWriter writer = sim::TrajectoryWriter::create(folder / "t.h5", {1, 2, 4, 2, 4, 4, 40}, header, state,
+                                                                 std::vector<double>(30, 1.0));
     state.step = 1;
     state.time = 0.1;
     writer.append(state, std::span(&record, 1));
@@ -178,7 +180,8 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
   return 0;
 }
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed) {
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
   support::Random random(seed);
   if (random() % 2 != 0) return LLVMFuzzerMutate(data, size, max_size);
   const std::vector<std::uint8_t> bytes = random() % 4 == 0 ? whole() : edited(whole(), random);
@@ -200,7 +203,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
       fuzz::accepted([&] {
         const sim::State state = reader.state(k);
         for (const sim::VesicleState& v : state.vesicles)
-          for (const sim::Coefficients* c : {&v.position, &v.velocity, &v.tension, &v.labels, &v.position_before, &v.velocity_before})
+          for (const sim::Coefficients* c :
+               {&v.position, &v.velocity, &v.tension, &v.labels, &v.position_before, &v.velocity_before})
             if (c->values.rows() != sim::coefficient_count(c->order) || !c->values.allFinite())
               fuzz::broken("an accepted state is finite and of its orders");
       });

@@ -1,11 +1,11 @@
 // Surfaces with known shapes, as states of a vesicle.
 #pragma once
 
+#include "render/core/parameters.h"
 #include "render/image/difference.h"
 #include "render/scene/cutaway.h"
-#include "render/scene/mesh.h"
-#include "render/core/parameters.h"
 #include "render/scene/frame.h"
+#include "render/scene/mesh.h"
 #include "sim/sphere/basis.h"
 
 #include <cmath>

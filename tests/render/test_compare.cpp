@@ -62,7 +62,8 @@ TEST_CASE("ten pixels may differ in a small picture and a share of 2e-5 in a lar
 TEST_CASE("a single pixel that differs much breaks the limit of the largest difference only") {
   const Image a = noise(1000, 1000, 2);
   CHECK(render::same_picture(render::difference(a, changed(a, 1, 48))));
-  CHECK(render::objections(render::difference(a, changed(a, 1, 49))) == std::vector<std::string>{"a pixel differs by 49 (allowed: 48)"});
+  CHECK(render::objections(render::difference(a, changed(a, 1, 49))) ==
+        std::vector<std::string>{"a pixel differs by 49 (allowed: 48)"});
   CHECK_FALSE(render::same_picture(render::difference(a, changed(a, 10, 92))));
 }
 
@@ -82,7 +83,8 @@ TEST_CASE("a limit that is no number lets nothing pass, and is refused where it 
     CHECK_THROWS_AS(render::check_limit("ppd", ppd), std::invalid_argument);
     CHECK_THROWS_AS(render::flip(red, blue, ppd), std::invalid_argument);
   }
-  for (const double ppd : {render::flip_least_ppd, render::flip_most_ppd}) CHECK(mean(render::flip(red, blue, ppd)) > 0.5);
+  for (const double ppd : {render::flip_least_ppd, render::flip_most_ppd})
+    CHECK(mean(render::flip(red, blue, ppd)) > 0.5);
 }
 
 TEST_CASE("a difference of two everywhere breaks the limit of the root mean square only") {
@@ -130,7 +132,8 @@ TEST_CASE("transparency counts when one of the pictures has it") {
   const Image opaque = even(20, 20, 200, 100, 50);
   Image with_alpha(20, 20, 4);
   for (int i = 0; i < 400; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) with_alpha.pixels[std::size_t(4 * i) + c] = opaque.pixels[std::size_t(3 * i) + c];
+    for (std::size_t c = 0; c < 3; ++c)
+      with_alpha.pixels[std::size_t(4 * i) + c] = opaque.pixels[std::size_t(3 * i) + c];
     with_alpha.pixels[std::size_t(4 * i) + 3] = 255;
   }
   CHECK(render::same_picture(render::difference(opaque, with_alpha)));
@@ -186,11 +189,13 @@ TEST_CASE("FLIP of even pictures is what the paper's equations give by hand") {
   const double e = std::pow(100.0, 0.7);  // black and white differ in lightness alone
   const double expected = 0.95 + 0.05 * (e - 0.4 * m) / (0.6 * m);
   INFO("expected " << expected);
-  CHECK(of(even(40, 30, 0, 0, 0), even(40, 30, 255, 255, 255)) == Approx(expected).margin(1e-4));  // the white point of the colours by hand has five digits
+  CHECK(of(even(40, 30, 0, 0, 0), even(40, 30, 255, 255, 255)) ==
+        Approx(expected).margin(1e-4));  // the white point of the colours by hand has five digits
   // Two greys: L = 116 cbrt(Y) - 16 with Y = ((v + 0.055) / 1.055)^2.4.
   const auto lightness = [](int v) { return 116 * std::cbrt(std::pow((v / 255.0 + 0.055) / 1.055, 2.4)) - 16; };
   const double step = std::pow(lightness(140) - lightness(120), 0.7);
-  CHECK(of(even(40, 30, 120, 120, 120), even(40, 30, 140, 140, 140)) == Approx(0.95 * step / (0.4 * m)).margin(1e-4));  // the white point of the colours by hand has five digits
+  CHECK(of(even(40, 30, 120, 120, 120), even(40, 30, 140, 140, 140)) ==
+        Approx(0.95 * step / (0.4 * m)).margin(1e-4));  // the white point of the colours by hand has five digits
 }
 
 TEST_CASE("FLIP in tiles is FLIP of the whole, bit by bit, and zero where nothing is near") {
@@ -287,7 +292,7 @@ TEST_CASE("what a file declares of its colours and frames is compared with its s
     const auto all = render::objections(render::difference(render::png_from(a, "a"), render::png_from(b, "b")));
     return all.empty() ? std::string() : all.front();
   };
-  CHECK(said(plain, srgb).empty());  // no word means sRGB
+  CHECK(said(plain, srgb).empty());                                        // no word means sRGB
   CHECK(said(plain, with_chunk(plain, "gAMA", "\0\0\xb1\x8f"s)).empty());  // 1/2.2
   const std::string linear = with_chunk(plain, "gAMA", "\0\x01\x86\xa0"s);
   CHECK(said(srgb, linear) == "its numbers mean gamma 1 instead of sRGB");
@@ -339,8 +344,10 @@ std::string grey_file(int width, int height, int bits, bool interlaced, const st
   for (const char c : rows) low = (low + static_cast<unsigned char>(c)) % 65521, high = (high + low) % 65521;
   const int size = static_cast<int>(rows.size()), l = static_cast<int>(low), h = static_cast<int>(high);
   REQUIRE(size < 65536);
-  const std::string stored = "\x78\x01\x01"s + bytes({size, size >> 8, ~size, ~size >> 8}) + rows + bytes({h >> 8, h, l >> 8, l});
-  return "\x89PNG\r\n\x1a\n"s + chunk("IHDR", bytes({0, 0, width >> 8, width, 0, 0, height >> 8, height, bits, 0, 0, 0, interlaced})) +
+  const std::string stored =
+      "\x78\x01\x01"s + bytes({size, size >> 8, ~size, ~size >> 8}) + rows + bytes({h >> 8, h, l >> 8, l});
+  return "\x89PNG\r\n\x1a\n"s +
+         chunk("IHDR", bytes({0, 0, width >> 8, width, 0, 0, height >> 8, height, bits, 0, 0, 0, interlaced})) +
          chunk("IDAT", stored) + chunk("IEND", "");
 }
 
@@ -355,7 +362,8 @@ TEST_CASE("the PNG reader keeps the lower bytes of 16 bits") {
 
 TEST_CASE("the PNG reader puts an interlaced picture together") {
   // First column, first row and the steps of Adam7's passes.
-  constexpr int passes[7][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4}, {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
+  constexpr int passes[7][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
+                                {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
   const int width = 21, height = 407;  // more rows than are read at a time
   const auto value = [](int x, int y) { return static_cast<std::uint8_t>(7 * x + 31 * y + x * y); };
   std::string rows;
@@ -381,7 +389,8 @@ TEST_CASE("a picture of another format is called what it is, and no pipe is wait
   CHECK_THAT(message("RIFF\0\0\0\0WEBPVP8 "s), Catch::EndsWith("a WebP picture"));
   CHECK_THAT(message("version https://git-lfs.github.com/spec/v1\noid sha256:0\n"), Catch::Contains("'git lfs pull'"));
   REQUIRE(mkfifo((folder / "pipe.png").c_str(), 0600) == 0);
-  CHECK_THAT(support::message_of([&] { render::read_png(folder / "pipe.png"); }), Catch::Contains("is a pipe or a device"));
+  CHECK_THAT(support::message_of([&] { render::read_png(folder / "pipe.png"); }),
+             Catch::Contains("is a pipe or a device"));
   CHECK_THAT(support::message_of([&] { render::read_png(folder.path()); }), Catch::Contains("is a folder"));
   CHECK(render::png_memory(folder / "pipe.png") == 0);
 }
@@ -394,9 +403,9 @@ TEST_CASE("FLIP sees an edge more than an even change, and less from further awa
   const std::vector<float> near = render::flip(grey, line, 67), far = render::flip(grey, line, 200);
   CHECK(largest(near) > largest(render::flip(grey, even(120, 80, 127, 127, 127))));
   CHECK(largest(far) < largest(near));
-  CHECK(near[60 + 120 * 40] == Approx(near[60 + 120 * 20]));      // along the line
+  CHECK(near[60 + 120 * 40] == Approx(near[60 + 120 * 20]));               // along the line
   CHECK(near[50 + 120 * 40] == Approx(near[70 + 120 * 40]).margin(1e-5));  // on both sides
-  CHECK(near[5] == 0);                                            // where there is nothing
+  CHECK(near[5] == 0);                                                     // where there is nothing
 }
 
 TEST_CASE("no header makes the PNG reader take memory that the file cannot fill") {

@@ -1,8 +1,8 @@
 // OpenGL without a window.
+#include "render/core/style.h"
+#include "render/draw/draw.h"
 #include "render/gl/context.h"
 #include "render/gl/context_back_ends.h"
-#include "render/draw/draw.h"
-#include "render/core/style.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"
@@ -25,9 +25,9 @@ std::optional<render::Renderer>& opened(std::optional<render::Renderer>& slot, c
 render::Frame scene() {
   render::ViewParameters view;
   view.size = {320, 200};
-  const sim::State state = surfaces::state_of(
-      {surfaces::disc(surfaces::turn(50, {1, 1, 0}), {-1.4, 0, 0}),
-       surfaces::ellipsoid({1.3, 0.8, 0.8}, surfaces::turn(-25, {0, 1, 0}), {1.4, 0, 0})});
+  const sim::State state =
+      surfaces::state_of({surfaces::disc(surfaces::turn(50, {1, 1, 0}), {-1.4, 0, 0}),
+                          surfaces::ellipsoid({1.3, 0.8, 0.8}, surfaces::turn(-25, {0, 1, 0}), {1.4, 0, 0})});
   return surfaces::painted(surfaces::frame_of(state, view), state);
 }
 
@@ -36,7 +36,8 @@ render::Frame scene() {
 TEST_CASE("a missing OpenGL library names packages that every Debian has, or the back end that serves instead") {
   const std::string osmesa = support::message_of([] { render::open_osmesa({"libNoSuchOSMesa.so.8"}); });
   CHECK_THAT(osmesa, Catch::Contains("--gl egl") && !Catch::Contains("libosmesa"));
-  const std::string egl = support::message_of([] { render::open_egl(render::EglDevices::any, -1, {"libNoSuchEGL.so.1"}); });
+  const std::string egl =
+      support::message_of([] { render::open_egl(render::EglDevices::any, -1, {"libNoSuchEGL.so.1"}); });
   CHECK_THAT(egl, Catch::Contains("libegl1") && Catch::Contains("libgl1-mesa-dri"));
 }
 
@@ -103,8 +104,8 @@ TEST_CASE("the number of Mesa's threads does not change a pixel") {
   std::vector<std::string> bytes;
   for (const char* threads : {"0", "1", "2"}) {
     const std::filesystem::path picture = folder / (std::string("threads") + threads + ".png");
-    const std::string command = std::string("LP_NUM_THREADS=") + threads + " TANKTREAD_TEST_PICTURE='" + picture.string() +
-                                "' '" + self.string() + "' '[child]' > /dev/null";
+    const std::string command = std::string("LP_NUM_THREADS=") + threads + " TANKTREAD_TEST_PICTURE='" +
+                                picture.string() + "' '" + self.string() + "' '[child]' > /dev/null";
     REQUIRE(std::system(command.c_str()) == 0);
     bytes.push_back(support::read_file(picture));
   }
@@ -123,5 +124,6 @@ TEST_CASE("shaders can be taken from a folder, and a fault in one is told with i
   CHECK(render::draw_frame(edited, frame) == render::draw_frame(embedded, frame));
   support::write_file(folder / "body.frag", "void main() { nonsense }\n");
   render::Renderer broken(render::parse_gl_choice("software"), folder.path());
-  CHECK_THAT(support::message_of([&] { render::draw_frame(broken, frame); }), Catch::Contains("body.frag does not compile"));
+  CHECK_THAT(support::message_of([&] { render::draw_frame(broken, frame); }),
+             Catch::Contains("body.frag does not compile"));
 }

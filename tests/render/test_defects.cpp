@@ -17,15 +17,15 @@ namespace {
 /// The pair of the goldens, with something a little wrong.
 struct Defect {
   const char* name;
-  double rotation = 0;        ///< of the second vesicle, degrees
-  double shift = 0;           ///< of the second vesicle, radii
-  double stretch = 0;         ///< of the second vesicle along its axis, share
-  double bump = 0;            ///< of the first vesicle, share of its size
-  double label = 0;           ///< of the second vesicle's labels, degrees
-  double light = 0;           ///< share more
+  double rotation = 0;                      ///< of the second vesicle, degrees
+  double shift = 0;                         ///< of the second vesicle, radii
+  double stretch = 0;                       ///< of the second vesicle along its axis, share
+  double bump = 0;                          ///< of the first vesicle, share of its size
+  double label = 0;                         ///< of the second vesicle's labels, degrees
+  double light = 0;                         ///< share more
   void (*frame)(render::Frame&) = nullptr;  ///< what else is told to draw
   void (*paint)(render::Image&) = nullptr;  ///< what happens to the picture afterwards
-  bool perceptual = false;    ///< somebody who flips between the two sees it: caught by the preset `perceptual`, too
+  bool perceptual = false;  ///< somebody who flips between the two sees it: caught by the preset `perceptual`, too
 };
 
 sim::State pair(const Defect& d) {
@@ -35,13 +35,15 @@ sim::State pair(const Defect& d) {
     // A bump of 30 degrees across, where one looks at the disc.
     const Vec3 to = Vec3(0.3, -0.85, 0.4).normalized();
     const double bump = 1 + d.bump * std::exp(-(1 - s.dot(to)) / 0.034);
-    return Vec3(-1.25, 0, 0.5) + r * (bump * scale * Vec3(s.x(), s.y(), 0.5 * 1.022378509 * s.z() * (0.207 + 2.003 * q - 1.123 * q * q)));
+    return Vec3(-1.25, 0, 0.5) +
+           r * (bump * scale * Vec3(s.x(), s.y(), 0.5 * 1.022378509 * s.z() * (0.207 + 2.003 * q - 1.123 * q * q)));
   };
   const Eigen::Matrix3d other = turn(66 + d.rotation, {0, 1, 0}), label = turn(d.label, {0, 0, 1});
   const auto prolate = [&](const Vec3& s) -> Vec3 {
     return Vec3(1.25 + d.shift, 0, -0.5) + other * Vec3(0.82 * s.x(), 0.82 * s.y(), 1.5 * (1 + d.stretch) * s.z());
   };
-  return surfaces::state_of({surfaces::vesicle(disc, [](const Vec3& s) { return s; }, 24),
+  return surfaces::state_of({surfaces::vesicle(
+                                 disc, [](const Vec3& s) { return s; }, 24),
                              surfaces::vesicle(prolate, [&](const Vec3& s) -> Vec3 { return label * s; })});
 }
 
@@ -118,7 +120,8 @@ void repaint(render::Image& image, F&& f) {
     for (int x = 0; x < image.width; ++x)
       for (int c = 0; c < 3; ++c) {
         std::uint8_t& v = image.at(x, y)[c];
-        v = static_cast<std::uint8_t>(std::clamp(static_cast<int>(std::lround(f(static_cast<double>(v), x, y, c))), 0, 255));
+        v = static_cast<std::uint8_t>(
+            std::clamp(static_cast<int>(std::lround(f(static_cast<double>(v), x, y, c))), 0, 255));
       }
 }
 /// The pixels of a rectangle, its corner at shares of the picture, change by so much towards the middle of the range.
@@ -151,26 +154,43 @@ const Defect defects[] = {
     {.name = "a bump of 1 %", .bump = 0.01},
     {.name = "its labels turned by 0.02 degrees", .label = 0.02},
     {.name = "one vesicle missing", .frame = [](F& f) { f.bodies.pop_back(); }, .perceptual = true},
-    {.name = "one vesicle in another colour", .frame = [](F& f) { f.bodies[1].colour = render::body_colour(2); }, .perceptual = true},
+    {.name = "one vesicle in another colour",
+     .frame = [](F& f) { f.bodies[1].colour = render::body_colour(2); },
+     .perceptual = true},
     {.name = "lines 0.1 pixels wider", .frame = [](F& f) { f.view.line_width += at_1080(f, 0.1); }},
     {.name = "lines 0.1 pixels thinner", .frame = [](F& f) { f.view.line_width -= at_1080(f, 0.1); }},
     {.name = "lines 0.2 pixels thinner", .frame = [](F& f) { f.view.line_width -= at_1080(f, 0.2); }},
     {.name = "outlines missing", .frame = [](F& f) { f.view.outline_width = 0; }, .perceptual = true},
     {.name = "tracer dots missing", .frame = [](F& f) { f.view.tracers = false; }, .perceptual = true},
     {.name = "key light 1 % stronger", .light = 0.01},
-    {.name = "the whole picture one level darker", .paint = [](I& i) { repaint(i, [](double v, int, int, int) { return v - 1; }); }},
-    {.name = "red 1 % stronger", .paint = [](I& i) { repaint(i, [](double v, int, int, int c) { return c == 0 ? 1.01 * v : v; }); }},
-    {.name = "a gamma of 1.02", .paint = [](I& i) { repaint(i, [](double v, int, int, int) { return 255 * std::pow(v / 255, 1.02); }); }},
+    {.name = "the whole picture one level darker",
+     .paint = [](I& i) { repaint(i, [](double v, int, int, int) { return v - 1; }); }},
+    {.name = "red 1 % stronger",
+     .paint = [](I& i) { repaint(i, [](double v, int, int, int c) { return c == 0 ? 1.01 * v : v; }); }},
+    {.name = "a gamma of 1.02",
+     .paint = [](I& i) { repaint(i, [](double v, int, int, int) { return 255 * std::pow(v / 255, 1.02); }); }},
     {.name = "the picture moved by one pixel", .paint = [](I& i) { move_right(i, 1); }, .perceptual = true},
-    {.name = "a caption moved by one pixel", .frame = [](F& f) { f.captions.title = " " + f.captions.title; }, .perceptual = true},
-    {.name = "λ = 11 for λ = 10 in the caption", .frame = [](F& f) { f.captions.parameters = "Ca = 2.0   λ = 11   ν = 0.85"; }, .perceptual = true},
-    {.name = "12.51 for 12.50 in the time stamp", .frame = [](F& f) { f.captions.time = "γ̇t = 12.51"; }, .perceptual = true},
-    {.name = "a comma for a point in the caption", .frame = [](F& f) { f.captions.parameters = "Ca = 2,0   λ = 10   ν = 0.85"; }, .perceptual = true},
-    {.name = "a letter of the title missing", .frame = [](F& f) { f.captions.title = "A pair in shea flow"; }, .perceptual = true},
+    {.name = "a caption moved by one pixel",
+     .frame = [](F& f) { f.captions.title = " " + f.captions.title; },
+     .perceptual = true},
+    {.name = "λ = 11 for λ = 10 in the caption",
+     .frame = [](F& f) { f.captions.parameters = "Ca = 2.0   λ = 11   ν = 0.85"; },
+     .perceptual = true},
+    {.name = "12.51 for 12.50 in the time stamp",
+     .frame = [](F& f) { f.captions.time = "γ̇t = 12.51"; },
+     .perceptual = true},
+    {.name = "a comma for a point in the caption",
+     .frame = [](F& f) { f.captions.parameters = "Ca = 2,0   λ = 10   ν = 0.85"; },
+     .perceptual = true},
+    {.name = "a letter of the title missing",
+     .frame = [](F& f) { f.captions.title = "A pair in shea flow"; },
+     .perceptual = true},
     {.name = "a scale bar 1 % longer", .frame = [](F& f) { f.captions.scale_length *= 1.01; }},
     {.name = "one hot pixel", .paint = [](I& i) { dot(i, 0.7, 0.6, 1, 1, 120); }, .perceptual = true},
     {.name = "one pixel that differs by 60", .paint = [](I& i) { dot(i, 0.1, 0.4, 1, 1, 60); }},
-    {.name = "a dot of 2 x 5 pixels that differ by 92", .paint = [](I& i) { dot(i, 0.12, 0.5, 2, 5, 92); }, .perceptual = true},
+    {.name = "a dot of 2 x 5 pixels that differ by 92",
+     .paint = [](I& i) { dot(i, 0.12, 0.5, 2, 5, 92); },
+     .perceptual = true},
     {.name = "a block of 8 x 8 pixels that differ by 4", .paint = [](I& i) { dot(i, 0.3, 0.7, 8, 8, 4); }},
     {.name = "a column of pixels that differ by 3", .paint = [](I& i) { dot(i, 0.5, 0, 1, i.height, 3); }},
     {.name = "the noise of a lossy format", .paint = lossy},
@@ -187,7 +207,8 @@ render::CompareRule perceptual() {
 std::filesystem::path kept(int width, int height) {
   const char* folder = std::getenv("TANKTREAD_PICTURES");
   if (!folder) return {};
-  const std::filesystem::path path = std::filesystem::path(folder) / (std::to_string(width) + "x" + std::to_string(height));
+  const std::filesystem::path path =
+      std::filesystem::path(folder) / (std::to_string(width) + "x" + std::to_string(height));
   std::filesystem::create_directories(path);
   return path;
 }
@@ -202,8 +223,8 @@ void check_defects(int width, int height, bool painted_only) {
     const render::Image bad = painter.bad(defect);
     if (!folder.empty()) render::write_png(folder / (std::string(defect.name) + ".png"), bad);
     const render::ImageDifference d = render::difference(painter.good(), bad);
-    INFO(width << " x " << height << ", " << defect.name << ": largest " << d.maximum << ", above 2: " << d.above << ", rmse "
-               << d.rmse);
+    INFO(width << " x " << height << ", " << defect.name << ": largest " << d.maximum << ", above 2: " << d.above
+               << ", rmse " << d.rmse);
     CHECK_FALSE(render::same_picture(d));
     if (!defect.perceptual) continue;
     const render::ImageDifference seen = render::difference(painter.good(), bad, perceptual());

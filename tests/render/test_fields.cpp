@@ -1,7 +1,7 @@
 // Colour maps, colour bars, and that what is painted can be read off them.
-#include "render/overlay/colour_bar.h"
-#include "render/draw/draw.h"
 #include "render/core/style.h"
+#include "render/draw/draw.h"
+#include "render/overlay/colour_bar.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"
@@ -130,7 +130,8 @@ struct Painted {
 
 double grey_of(const std::uint8_t* p) { return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2]; }
 
-Painted paint(render::Renderer& renderer, const render::ColourMapRow& map, double value, bool dots, std::string_view camera = "flow-gradient") {
+Painted paint(render::Renderer& renderer, const render::ColourMapRow& map, double value, bool dots,
+              std::string_view camera = "flow-gradient") {
   render::ViewParameters view = surfaces::bare_view(400, 400);
   view.style = "field";
   view.supersampling = 2;
@@ -165,7 +166,8 @@ TEST_CASE("in grey a value below zero is told from the one above it by dots, on 
       INFO(map.name << " at " << value);
       const Painted above = paint(renderer, map, value, true), below = paint(renderer, map, -value, true),
                     bare = paint(renderer, map, -value, false);
-      CHECK(above.grey == Approx(bare.grey).margin(16));  // equal L*; the weights of grey differ a little. Hence the dots
+      CHECK(above.grey ==
+            Approx(bare.grey).margin(16));  // equal L*; the weights of grey differ a little. Hence the dots
       CHECK(bare.marked == 0);
       CHECK(above.marked == 0);
       CHECK(below.marked > 0.12);  // a full dot covers pi/16 of its cell
@@ -182,7 +184,9 @@ TEST_CASE("dots of negative values stand as densely at a pole of the membrane as
   double darkest = 255;
   for (int y = 180; y < 220; ++y)
     for (int x = 180; x < 220; ++x) darkest = std::min(darkest, grey_of(pole.image.at(x, y)));
-  CHECK(darkest == Approx(255 * (0.299 * colour.r + 0.587 * colour.g + 0.114 * colour.b)).margin(4));  // a dot is wider than a pixel
+  CHECK(
+      darkest ==
+      Approx(255 * (0.299 * colour.r + 0.587 * colour.g + 0.114 * colour.b)).margin(4));  // a dot is wider than a pixel
 }
 
 TEST_CASE("values beyond the range have the colour of the end, and the bar points beyond it") {
@@ -201,7 +205,8 @@ TEST_CASE("values beyond the range have the colour of the end, and the bar point
 
 TEST_CASE("ticks of a bar are round numbers within the range") {
   CHECK(render::bar_ticks(-1, 1) == std::vector<double>{-1, -0.5, 0, 0.5, 1});
-  for (const auto& [low, high] : {std::pair{0.0, 7.3}, std::pair{-450.0, 450.0}, std::pair{0.003, 0.011}, std::pair{12.0, 12.5}}) {
+  for (const auto& [low, high] :
+       {std::pair{0.0, 7.3}, std::pair{-450.0, 450.0}, std::pair{0.003, 0.011}, std::pair{12.0, 12.5}}) {
     const std::vector<double> ticks = render::bar_ticks(low, high);
     CHECK(ticks.size() >= 3);
     CHECK(ticks.size() <= 7);
@@ -213,7 +218,8 @@ TEST_CASE("ticks of a bar are round numbers within the range") {
 TEST_CASE("vesicles that follow each other have colours that grey print tells apart") {
   const auto grey = [](const render::Colour& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; };
   for (std::size_t k = 0; k < render::body_colours().size(); ++k)
-    CHECK(std::abs(grey(render::body_colour(k)) - grey(render::body_colour(k + 1))) > 0.13);  // a third of the shading's range
+    CHECK(std::abs(grey(render::body_colour(k)) - grey(render::body_colour(k + 1))) >
+          0.13);  // a third of the shading's range
 }
 
 TEST_CASE("colours are names or #rrggbb, others are answered with the nearest name") {
@@ -221,5 +227,6 @@ TEST_CASE("colours are names or #rrggbb, others are answered with the nearest na
   CHECK(render::parse_colour("sky") == render::body_colour(1));
   CHECK_THAT(support::message_of([] { render::parse_colour("corall"); }), Catch::Contains("did you mean 'coral'"));
   CHECK_THAT(support::message_of([] { render::parse_colour("#ff80"); }), Catch::Contains("not #rrggbb"));
-  CHECK_THAT(support::message_of([] { render::find_colour_map("viridus"); }), Catch::Contains("did you mean 'viridis'"));
+  CHECK_THAT(support::message_of([] { render::find_colour_map("viridus"); }),
+             Catch::Contains("did you mean 'viridis'"));
 }

@@ -1,7 +1,7 @@
 // Figures and their files.
 #include "render/figures/figure.h"
-#include "render/image/image.h"
 #include "render/figures/plot_marks.h"
+#include "render/image/image.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"
@@ -25,8 +25,9 @@ render::FigureInput input() {
   render::FigureInput in;
   in.labels = {"λ = 1", "λ = 4"};
   for (int k = 0; k < 5; ++k) {
-    sim::State state = surfaces::state_of({surfaces::ellipsoid({1.5, 0.8, 0.8}, turn(-12.0 * k, {0, 1, 0}), {-1.6, 0, 0.1}),
-                                           surfaces::disc(turn(8.0 * k, {0, 1, 0}), {1.6, 0, -0.1})});
+    sim::State state =
+        surfaces::state_of({surfaces::ellipsoid({1.5, 0.8, 0.8}, turn(-12.0 * k, {0, 1, 0}), {-1.6, 0, 0.1}),
+                            surfaces::disc(turn(8.0 * k, {0, 1, 0}), {1.6, 0, -0.1})});
     state.time = 2.5 * k;
     in.states.push_back(state);
   }
@@ -40,7 +41,8 @@ render::FigureInput input() {
   in.series[2].axis = "error";
   in.series[2].values = {0, 1e-9, 3e-4};
   in.series[2].scale = render::Scale::logarithmic;
-  render::Plot plot{{"ν", render::Scale::linear, true, true}, {"ω / γ̇", render::Scale::linear, true, true}, {}, {}, {}, {}};
+  render::Plot plot{
+      {"ν", render::Scale::linear, true, true}, {"ω / γ̇", render::Scale::linear, true, true}, {}, {}, {}, {}};
   render::Curve curve;
   curve.name = "published";
   curve.x = {0.7, 0.8, 0.95};
@@ -98,7 +100,8 @@ TEST_CASE("each name in an SVG is defined once, counted from 0 in its kind, and 
   std::size_t pictures = 0;
   for (const render::FigureRow& row : render::figures()) {
     INFO(row.name);
-    const std::string svg = support::read_file(render::write_figure(row.draw(input()), folder / std::string(row.name))[1]);
+    const std::string svg =
+        support::read_file(render::write_figure(row.draw(input()), folder / std::string(row.name))[1]);
     std::map<std::string, int> next;
     std::set<std::string> names;
     const std::regex definition(" id=\"([A-Za-z-]*)([0-9]*)\"");
@@ -108,7 +111,8 @@ TEST_CASE("each name in an SVG is defined once, counted from 0 in its kind, and 
       pictures += at->str(1).find("image") != std::string::npos || at->str(1).find("source") != std::string::npos;
     }
     const std::regex reference("(?:href=\"|url\\()#([\\w-]+)");
-    for (std::sregex_iterator at(svg.begin(), svg.end(), reference), end; at != end; ++at) CHECK(names.contains(at->str(1)));
+    for (std::sregex_iterator at(svg.begin(), svg.end(), reference), end; at != end; ++at)
+      CHECK(names.contains(at->str(1)));
   }
   CHECK(pictures > 0);  // what Cairo counts through the process
 }
@@ -166,10 +170,12 @@ TEST_CASE("numbers of an axis never touch, at any length and size of text") {
   for (const render::Theme& row : render::themes())
     for (const double font : {6.0, 9.0, 14.0, 24.0})
       for (const double length : {60.0, 100.0, 180.0, 400.0, 900.0})
-        for (const render::Range range : {render::Range{0, 1}, render::Range{-3.7, 12}, render::Range{1.331, 1.352}, render::Range{-1e-9, 4e-9}}) {
+        for (const render::Range range :
+             {render::Range{0, 1}, render::Range{-3.7, 12}, render::Range{1.331, 1.352}, render::Range{-1e-9, 4e-9}}) {
           const render::Theme theme = render::find_theme(row.name, font);
           const render::Ticks ticks = render::ticks_of(ruler, theme, {}, range, length, true);
-          INFO(row.name << ", text " << font << ", length " << length << ", from " << range.low << " to " << range.high);
+          INFO(row.name << ", text " << font << ", length " << length << ", from " << range.low << " to "
+                        << range.high);
           REQUIRE(ticks.values.size() >= 1);
           if (length >= 180 && font <= 14) CHECK(ticks.values.size() >= 2);
           for (std::size_t k = 1; k < ticks.values.size(); ++k) {
@@ -193,7 +199,8 @@ TEST_CASE("a circle stays a circle on every page") {
         const support::TemporaryFolder folder;
         render::write_drawing_png(folder / "f.png", figure.drawing);
         const render::Image image = render::read_png(folder / "f.png").image;
-        INFO(kind << " on a page of " << page.size() << " numbers, " << image.width << "x" << image.height << ", theme " << theme);
+        INFO(kind << " on a page of " << page.size() << " numbers, " << image.width << "x" << image.height << ", theme "
+                  << theme);
         if (page.size() == 2) {
           CHECK(image.width == std::lround(page[0] / 25.4 * 300));
           CHECK(image.height == std::lround(page[1] / 25.4 * 300));
@@ -244,7 +251,8 @@ TEST_CASE("the panels of a sheet lie on the page, side by side, and show their s
       CHECK(p.top + p.height < sheet.height + 1e-6);
       CHECK(p.height == Approx(2 * p.half_height * sheet.scale));
       CHECK(p.width > 5.5 * sheet.scale);  // both vesicles, at -1.6 and 1.6
-      if (k > 0 && sheet.panels[k - 1].top == p.top) CHECK(p.left > sheet.panels[k - 1].left + sheet.panels[k - 1].width);
+      if (k > 0 && sheet.panels[k - 1].top == p.top)
+        CHECK(p.left > sheet.panels[k - 1].left + sheet.panels[k - 1].width);
     }
   }
 }
@@ -255,7 +263,9 @@ TEST_CASE("a figure's plane has axes along x and z where it can, and says which"
     p.plane_normal = normal;
     const render::CutPlane plane = render::plane_of(p, {1, 2, 3});
     CHECK(plane.origin == Vec3(1, 2, 3));
-    CHECK(std::abs(plane.right.dot(plane.normal)) + std::abs(plane.up.dot(plane.normal)) + std::abs(plane.right.dot(plane.up)) < 1e-12);
+    CHECK(std::abs(plane.right.dot(plane.normal)) + std::abs(plane.up.dot(plane.normal)) +
+              std::abs(plane.right.dot(plane.up)) <
+          1e-12);
     return render::axis_names(plane);
   };
   CHECK(axes({0, 2, 0}) == std::pair<std::string, std::string>("x", "z"));
@@ -275,8 +285,9 @@ TEST_CASE("numbers on axes are written as readers expect") {
 
 TEST_CASE("a figure that cannot be written names its path") {
   const support::TemporaryFolder folder;
-  CHECK_THAT(support::message_of(
-                 [&] { render::write_figure(render::find_figure("overlay").draw(input()), folder / "no/such/figure"); }),
+  CHECK_THAT(support::message_of([&] {
+               render::write_figure(render::find_figure("overlay").draw(input()), folder / "no/such/figure");
+             }),
              Catch::Contains("no/such/figure.png"));
   CHECK_THROWS_AS(render::find_figure("cross-sections").draw({}), std::invalid_argument);
   CHECK_THAT(support::message_of([] { render::find_figure("cross-section"); }),
@@ -305,7 +316,8 @@ TEST_CASE("numbers of an axis differ from each other, whatever their size and of
 TEST_CASE("instants beyond the trajectory are refused, not moved") {
   render::FigureParameters p;
   p.times = {0.5, 2.5};
-  CHECK_THROWS_WITH(render::chosen_states({0, 1, 2}, p), Catch::Contains("goes from t = 0 to t = 2") && Catch::Contains("2.5"));
+  CHECK_THROWS_WITH(render::chosen_states({0, 1, 2}, p),
+                    Catch::Contains("goes from t = 0 to t = 2") && Catch::Contains("2.5"));
   p.times = {std::nan("")};
   CHECK_THROWS(render::chosen_states({0, 1, 2}, p));
   p.times = {2};
@@ -325,8 +337,9 @@ TEST_CASE("text of a figure is text in PDF and SVG, and the PNG says its dots pe
   };
   render::write_drawing_svg(folder / "a.svg", drawing);
   const std::string svg = bytes(folder / "a.svg");
-  CHECK_THAT(svg, Catch::Contains("<text") && Catch::Contains("font-family=\"'DejaVu Sans'") && Catch::Contains(">0</tspan>") &&
-                      Catch::Contains("text-anchor=\"middle\"") && Catch::Contains("#000080") && Catch::Contains(" &lt;   2"));
+  CHECK_THAT(svg, Catch::Contains("<text") && Catch::Contains("font-family=\"'DejaVu Sans'") &&
+                      Catch::Contains(">0</tspan>") && Catch::Contains("text-anchor=\"middle\"") &&
+                      Catch::Contains("#000080") && Catch::Contains(" &lt;   2"));
   CHECK(svg.find("</svg>") > svg.find("</text>"));
   CHECK(svg.find("<path") == std::string::npos);  // no letter is an outline
   render::write_drawing_pdf(folder / "a.pdf", drawing);

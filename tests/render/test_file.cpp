@@ -4,16 +4,18 @@
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
+#include <unistd.h>
 #include <set>
 #include <system_error>
-#include <unistd.h>
 
 namespace fs = std::filesystem;
 using support::TemporaryFolder;
 
 namespace {
 
-std::string draft_name(int number) { return ".tanktread-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp"; }
+std::string draft_name(int number) {
+  return ".tanktread-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp";
+}
 
 std::size_t count_in(const TemporaryFolder& folder) {
   std::size_t count = 0;
@@ -23,7 +25,8 @@ std::size_t count_in(const TemporaryFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("a link that waits under the temporary name of a file is not written through, whatever the kind of the file") {
+TEST_CASE(
+    "a link that waits under the temporary name of a file is not written through, whatever the kind of the file") {
   const TemporaryFolder folder;
   const render::Drawing drawing{10, 10, [](cairo_t*, const render::Font&) {}};
   constexpr int waiting = 1000;  // more than this process has written so far
@@ -62,17 +65,26 @@ TEST_CASE("a link to a file that is not there yet is written through, and a ring
   CHECK(fs::is_symlink(folder / "link"));
   fs::create_symlink("b", folder / "a");
   fs::create_symlink("a", folder / "b");
-  CHECK(support::message_of([&] { sim::write_file(folder / "a", "new"); }).ends_with("Too many levels of symbolic links"));
+  CHECK(support::message_of([&] {
+          sim::write_file(folder / "a", "new");
+        }).ends_with("Too many levels of symbolic links"));
 }
 
 TEST_CASE("drafts of processes that were killed are removed; those of living ones, and what only looks alike, stay") {
   const TemporaryFolder folder;
   sim::Draft alive(folder / "target");
   alive.write("half");
-  std::set<std::string> staying{alive.path().filename().string(), "u.h5.tmp", ".notes.txt.17.tmp", ".tanktread-17.tmp",
-                                ".tanktread-17-x.tmp", ".tanktread-17-3.tmp~", "tanktread-17-3.tmp", ".tanktread-8-0.tmp"};
+  std::set<std::string> staying{alive.path().filename().string(),
+                                "u.h5.tmp",
+                                ".notes.txt.17.tmp",
+                                ".tanktread-17.tmp",
+                                ".tanktread-17-x.tmp",
+                                ".tanktread-17-3.tmp~",
+                                "tanktread-17-3.tmp",
+                                ".tanktread-8-0.tmp"};
   for (const std::string& name : staying)
-    if (name != alive.path().filename() && name != ".tanktread-8-0.tmp") support::write_file(folder / name, "somebody's");
+    if (name != alive.path().filename() && name != ".tanktread-8-0.tmp")
+      support::write_file(folder / name, "somebody's");
   fs::create_symlink("u.h5.tmp", folder / ".tanktread-8-0.tmp");
   support::write_file(folder / ".tanktread-17-3.tmp", "left by a kill");
   sim::remove_dead_drafts(folder.path());
@@ -93,8 +105,11 @@ TEST_CASE("a device is written to as it is, and a file that cannot be written le
   CHECK(support::message_of([] { sim::write_file("/dev/full", "text"); }) ==
         "/dev/full: cannot be written: No space left on device");
   fs::create_directory(folder / "taken");
-  CHECK(support::message_of([&] { sim::write_file(folder / "taken", "text"); }).ends_with("taken: cannot be written: Is a directory"));
-  CHECK(support::message_of([&] { sim::write_file(folder / "none/a", "text"); })
-            .ends_with("none/a: cannot be written: No such file or directory"));
+  CHECK(support::message_of([&] {
+          sim::write_file(folder / "taken", "text");
+        }).ends_with("taken: cannot be written: Is a directory"));
+  CHECK(support::message_of([&] {
+          sim::write_file(folder / "none/a", "text");
+        }).ends_with("none/a: cannot be written: No such file or directory"));
   CHECK(count_in(folder) == 1);
 }

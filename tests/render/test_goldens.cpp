@@ -1,5 +1,5 @@
-// A few pictures that somebody has looked at. The test house.goldens compares the same by `tanktread compare`. To accept what
-// is drawn now, look at it first: docs/ci.md.
+// A few pictures that somebody has looked at. The test house.goldens compares the same by `tanktread compare`. To
+// accept what is drawn now, look at it first: docs/ci.md.
 #include "render/draw/draw.h"
 #include "render/scene/arrow_net.h"
 
@@ -13,7 +13,8 @@ using surfaces::turn;
 
 namespace {
 
-/// Leaves the picture in TANKTREAD_GOLDENS_MADE (the environment's, or the build's), where `tanktread compare` finds it, and judges it by the same rule.
+/// Leaves the picture in TANKTREAD_GOLDENS_MADE (the environment's, or the build's), where `tanktread compare` finds
+/// it, and judges it by the same rule.
 void check_golden(const std::string& name, const render::Frame& frame) {
   render::Renderer renderer(render::parse_gl_choice("software"));
   const render::Image actual = render::draw_frame(renderer, frame);
@@ -46,7 +47,8 @@ sim::State pair() {
 TEST_CASE("the pair in the opaque style with arrows looks as it did") {
   render::Frame frame = surfaces::frame_of(pair(), small_view());
   const render::StateSummary summary = render::summarize(pair());
-  frame.arrows.points = render::arrow_points(render::frame_trajectory(std::span(&summary, 1), frame.view), summary.centroid);
+  frame.arrows.points =
+      render::arrow_points(render::frame_trajectory(std::span(&summary, 1), frame.view), summary.centroid);
   frame.arrows.velocities = sim::Matrix::Zero(frame.arrows.points.rows(), 3);
   frame.arrows.velocities.col(0) = frame.arrows.points.col(2);
   check_golden("pair_opaque", frame);
@@ -63,8 +65,9 @@ TEST_CASE("a prolate in the checker style looks as it did") {
   render::ViewParameters view = small_view();
   view.style = "checker";
   view.camera = "three-quarter";
-  check_golden("prolate_checker",
-               surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}))}), view));
+  check_golden(
+      "prolate_checker",
+      surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}))}), view));
 }
 
 TEST_CASE("the pair in the ghost style looks as it did") {
@@ -78,8 +81,9 @@ TEST_CASE("ghosts one behind the other look as they did") {
   render::ViewParameters view = small_view();
   view.style = "ghost";
   view.background = "white";
-  const sim::State state = surfaces::state_of({surfaces::disc(turn(-35, {0, 1, 0}) * turn(50, {1, 0, 0}), {-0.5, 0.8, 0.2}),
-                                               surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}), {0.4, -0.9, 0})});
+  const sim::State state =
+      surfaces::state_of({surfaces::disc(turn(-35, {0, 1, 0}) * turn(50, {1, 0, 0}), {-0.5, 0.8, 0.2}),
+                          surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}), {0.4, -0.9, 0})});
   check_golden("ghosts_in_depth", surfaces::frame_of(state, view));
 }
 

@@ -16,7 +16,8 @@ Image pattern(int width, int height, int channels) {
   Image image(width, height, channels);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      for (int c = 0; c < channels; ++c) image.at(x, y)[c] = static_cast<std::uint8_t>(7 * x + 13 * y * y + 101 * c + x * y);
+      for (int c = 0; c < channels; ++c)
+        image.at(x, y)[c] = static_cast<std::uint8_t>(7 * x + 13 * y * y + 101 * c + x * y);
   return image;
 }
 
@@ -106,7 +107,8 @@ TEST_CASE("a damaged PNG file is refused with one sentence") {
     wrong[place] = static_cast<char>(wrong[place] ^ 0x55);
     const std::string text = message(wrong);
     CHECK(text.find('\n') == std::string::npos);
-    if (place < good.size() - 12 && text.empty()) CHECK(render::read_png(folder / "bad.png").image == pattern(64, 64, 3));
+    if (place < good.size() - 12 && text.empty())
+      CHECK(render::read_png(folder / "bad.png").image == pattern(64, 64, 3));
   }
   CHECK_THAT(support::message_of([&] { render::read_png(folder / "none.png"); }), Catch::Contains("No such file"));
 }

@@ -13,8 +13,8 @@ using surfaces::turn;
 
 namespace {
 
-/// Distance of a point from an ellipse about the origin, below 0 inside: from its support function, h(u) = max over the ellipse
-/// of x . u, whose square is u^T m u.
+/// Distance of a point from an ellipse about the origin, below 0 inside: from its support function, h(u) = max over the
+/// ellipse of x . u, whose square is u^T m u.
 double beyond(const Eigen::Matrix2d& m, const Eigen::Vector2d& x) {
   double most = -1e300;
   constexpr int directions = 240;  // finds the largest to 1e-4
@@ -32,7 +32,7 @@ TEST_CASE("no ground is seen within the outline's width of an ellipsoid") {
   render::Renderer renderer(render::parse_gl_choice("software"));
   const Eigen::Matrix3d oblique = turn(33, {0, 1, 0}) * turn(40, {1, 0, 0.3});
   for (const Vec3& axes : {Vec3(1, 1, 1), Vec3(0.6, 0.6, 2), Vec3(1.3, 1.3, 0.12), Vec3(0.25, 1.5, 1)})
-    for (const double zoom : {1.0, 0.2, 0.05})   // bodies 170, 35 and 9 px long
+    for (const double zoom : {1.0, 0.2, 0.05})  // bodies 170, 35 and 9 px long
       for (const double px : {1.0, 2.2, 8.0, 20.0}) {
         render::ViewParameters view = surfaces::bare_view(240, 240);
         view.supersampling = 2;
@@ -40,7 +40,8 @@ TEST_CASE("no ground is seen within the outline's width of an ellipsoid") {
         view.outline_width = 1080.0 / 240 * px / 2;  // px / 2 of this picture
         const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid(axes, oblique)}), view);
         const render::Image image = render::draw_frame(renderer, frame);
-        // Seen along y, x to the right and z up: the shadow of the ellipsoid is the ellipse of the matrix R A^2 R^T without y.
+        // Seen along y, x to the right and z up: the shadow of the ellipsoid is the ellipse of the matrix R A^2 R^T
+        // without y.
         const double unit = 120 / frame.camera.half_height;
         const Eigen::Matrix3d full = oblique * axes.cwiseAbs2().asDiagonal() * oblique.transpose();
         Eigen::Matrix2d m;
@@ -49,7 +50,8 @@ TEST_CASE("no ground is seen within the outline's width of an ellipsoid") {
         int ground = 0;
         for (int y = 0; y < 240; ++y)
           for (int x = 0; x < 240; ++x) {
-            // Whole pixels only: their corners are 0.71 px from the middle; the mesh stays 0.1 px inside of the surface.
+            // Whole pixels only: their corners are 0.71 px from the middle; the mesh stays 0.1 px inside of the
+            // surface.
             if (beyond(m, {x + 0.5 - 120, 120 - y - 0.5}) > px / 2 - 0.85) continue;
             const std::uint8_t* p = image.at(x, y);
             ground += p[0] > 245 && p[1] > 245 && p[2] > 245;
@@ -63,6 +65,7 @@ TEST_CASE("an outline of the usual width needs few triangles more than those at 
   const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), surfaces::bare_view());
   const render::Mesh& mesh = frame.bodies[0].mesh;
   const std::size_t all = mesh.plan->indices().size();
-  CHECK(render::rim_triangles(mesh, frame.camera, 0.01).size() < 2 * all / 5);  // 5 px of 1080; the net is dense at its poles
-  CHECK(render::rim_triangles(mesh, frame.camera, 2).size() >= all / 2);    // wider than the body: all back faces
+  CHECK(render::rim_triangles(mesh, frame.camera, 0.01).size() <
+        2 * all / 5);                                                     // 5 px of 1080; the net is dense at its poles
+  CHECK(render::rim_triangles(mesh, frame.camera, 2).size() >= all / 2);  // wider than the body: all back faces
 }

@@ -1,6 +1,6 @@
 // What is drawn of membranes, measured against geometry.
-#include "render/draw/draw.h"
 #include "render/core/style.h"
+#include "render/draw/draw.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"
@@ -78,7 +78,8 @@ TEST_CASE("the silhouette of an ellipsoid has the area of its projection") {
     view.camera = row.name;
     const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid(a, r)}), view);
     const Vec3 d = r.transpose() * render::to_sim(row.axes.back);  // line of sight in the ellipsoid's axes
-    const double exact = std::numbers::pi * Vec3(a.y() * a.z() * d.x(), a.x() * a.z() * d.y(), a.x() * a.y() * d.z()).norm();
+    const double exact =
+        std::numbers::pi * Vec3(a.y() * a.z() * d.x(), a.x() * a.z() * d.y(), a.x() * a.y() * d.z()).norm();
     CHECK(silhouette(render::draw_frame(renderer, frame), frame.camera).area == Approx(exact).epsilon(2e-3));
   }
 }
@@ -287,7 +288,9 @@ TEST_CASE("a cut shows the inside, its rim lies on the plane, and nothing of the
   const Image cut = render::draw_frame(renderer, frame);
   const double px = 240 / frame.camera.half_width;
   // The bowl is seen from inside: light from above falls on its lower part.
-  const auto at = [&](double x, double z) { return brightness(cut.at(static_cast<int>(240 + x * px), static_cast<int>(240 - z * px))); };
+  const auto at = [&](double x, double z) {
+    return brightness(cut.at(static_cast<int>(240 + x * px), static_cast<int>(240 - z * px)));
+  };
   CHECK(at(0, -0.6) > at(0, 0.6) + 0.05);
   const Silhouette s = silhouette(cut, frame.camera);
   CHECK(std::sqrt(s.area / std::numbers::pi) * px == Approx(px + 4).margin(2.5));  // a disc, and half the rim's width
@@ -296,7 +299,8 @@ TEST_CASE("a cut shows the inside, its rim lies on the plane, and nothing of the
   aside.view.camera = "gradient-vorticity";
   const render::StateSummary summary = render::summarize(state);
   aside.camera = render::make_camera(render::frame_trajectory(std::span(&summary, 1), aside.view), summary.centroid);
-  CHECK(silhouette(render::draw_frame(renderer, aside), aside.camera).area == Approx(std::numbers::pi / 2).epsilon(0.05));
+  CHECK(silhouette(render::draw_frame(renderer, aside), aside.camera).area ==
+        Approx(std::numbers::pi / 2).epsilon(0.05));
 }
 
 TEST_CASE("every style of the catalogue draws its own picture") {
@@ -308,7 +312,8 @@ TEST_CASE("every style of the catalogue draws its own picture") {
     view.outline_width = 2.2;
     const sim::State state = surfaces::state_of({surfaces::disc(turn(60, {1, 0, 0}))});
     pictures.push_back(render::draw_frame(renderer, surfaces::painted(surfaces::frame_of(state, view), state)));
-    for (std::size_t k = 0; k + 1 < pictures.size(); ++k) CHECK(render::difference(pictures[k], pictures.back()).rmse > 1);
+    for (std::size_t k = 0; k + 1 < pictures.size(); ++k)
+      CHECK(render::difference(pictures[k], pictures.back()).rmse > 1);
   }
   CHECK_THAT(support::message_of([] { render::find_style("opaqe"); }), Catch::Contains("did you mean 'opaque'"));
 }

@@ -55,7 +55,8 @@ TEST_CASE("a section does not depend on where the parametrisation has its pole")
   const Eigen::Matrix3d r = turn(30, {0, 1, 0});
   std::vector<double> areas;
   for (const Eigen::Matrix3d& q : {turn(0, {0, 0, 1}), turn(90, {1, 0, 0}), turn(90, {0, 1, 0}), turn(40, {1, 2, 3})}) {
-    const auto x = surfaces::vesicle([&](const Vec3& s) -> Vec3 { return r * Vec3(1.5, 0.8, 0.9).cwiseProduct(q * s); });
+    const auto x =
+        surfaces::vesicle([&](const Vec3& s) -> Vec3 { return r * Vec3(1.5, 0.8, 0.9).cwiseProduct(q * s); });
     const std::vector<ClosedCurve> curves = render::cut(x.position, {});
     REQUIRE(curves.size() == 1);
     areas.push_back(render::enclosed_area(curves[0]));
@@ -126,12 +127,14 @@ TEST_CASE("a plane that misses the vesicle gives no curve") {
   CHECK(render::cut(surfaces::sphere().position, plane).empty());
 }
 
-TEST_CASE("volume, centre of mass and second moments of an ellipsoid are exact, and keep their digits far from the origin") {
+TEST_CASE(
+    "volume, centre of mass and second moments of an ellipsoid are exact, and keep their digits far from the origin") {
   struct Place {
     Vec3 centre;
     double tolerance;
   };
-  // Far away a coordinate has 1e-16 of 5e4 only; about the scene's origin the second moments would lose another 1e-16 of (5e4)^2.
+  // Far away a coordinate has 1e-16 of 5e4 only; about the scene's origin the second moments would lose another 1e-16
+  // of (5e4)^2.
   for (const Place& place : {Place{{0.3, -4, 2}, 1e-11}, Place{{3e4, -4e4, 2e4}, 1e-9}}) {
     INFO("at " << place.centre.transpose());
     const Vec3 a(1.6, 1.1, 0.5);

@@ -15,7 +15,8 @@ namespace {
 
 /// Two consecutive states of a motion x(s, t) with velocity v(s, t), the second `h` later than the first, at `start`.
 std::pair<sim::State, sim::State> two_states(const std::function<Vec3(const Vec3&, double)>& x,
-                                             const std::function<Vec3(const Vec3&, double)>& v, double start, double h) {
+                                             const std::function<Vec3(const Vec3&, double)>& v, double start,
+                                             double h) {
   const auto at = [&](double t) { return surfaces::coefficients(8, [&](const Vec3& s) { return x(s, t); }); };
   const auto rate = [&](double t) { return surfaces::coefficients(8, [&](const Vec3& s) { return v(s, t); }); };
   sim::VesicleState a = surfaces::sphere(), b = surfaces::sphere();

@@ -33,8 +33,10 @@ TEST_CASE("streamlines of a rotation are closed circles") {
     CHECK((line.points.rowwise().norm().array() - r).abs().maxCoeff() < 2e-3 * o.spacing * line.points.rows() / 10);
     CHECK((line.speed.array() - r).abs().maxCoeff() < 1e-2);
     closed += line.closed;
-    if (line.closed) CHECK(r < 2);
-    else CHECK(r > 1.9);  // those that leave through the corners
+    if (line.closed)
+      CHECK(r < 2);
+    else
+      CHECK(r > 1.9);  // those that leave through the corners
   }
   CHECK(closed >= 8);
 }
@@ -42,7 +44,9 @@ TEST_CASE("streamlines of a rotation are closed circles") {
 TEST_CASE("neighbouring streamlines keep their distance and leave no gap") {
   render::StreamlineOptions o;
   o.spacing = 0.25;
-  const auto flow = [](const Vector2d& p) { return Vector2d(1 + 0.3 * std::sin(2 * p.y()), 0.4 * std::cos(1.5 * p.x())); };
+  const auto flow = [](const Vector2d& p) {
+    return Vector2d(1 + 0.3 * std::sin(2 * p.y()), 0.4 * std::cos(1.5 * p.x()));
+  };
   const auto lines = render::streamlines(flow, window, window, o);
   REQUIRE(lines.size() > 10);
   for (std::size_t i = 0; i < lines.size(); ++i)
@@ -64,14 +68,16 @@ TEST_CASE("a streamline keeps the stream function, through slow and fast") {
   o.spacing = 0.2;
   for (const Streamline& line : render::streamlines(flow, window, window, o)) {
     const double value = psi(line.points(0, 0), line.points(0, 1));
-    for (Eigen::Index i = 0; i < line.points.rows(); ++i) CHECK(psi(line.points(i, 0), line.points(i, 1)) == Approx(value).margin(2e-3));
+    for (Eigen::Index i = 0; i < line.points.rows(); ++i)
+      CHECK(psi(line.points(i, 0), line.points(i, 1)) == Approx(value).margin(2e-3));
   }
 }
 
 TEST_CASE("the first seeds get their lines") {
   render::StreamlineOptions o;
   o.spacing = 0.5;
-  const auto lines = render::streamlines([](const Vector2d&) { return Vector2d(1, 0); }, window, window, o, {{0.1, 0.337}});
+  const auto lines =
+      render::streamlines([](const Vector2d&) { return Vector2d(1, 0); }, window, window, o, {{0.1, 0.337}});
   CHECK(lines.front().points.col(1).isConstant(0.337, 1e-12));
   CHECK(lines.front().points(0, 0) < -2);
   CHECK(lines.front().points(lines.front().points.rows() - 1, 0) > 2);
@@ -79,7 +85,8 @@ TEST_CASE("the first seeds get their lines") {
 
 TEST_CASE("fluid at rest has no streamlines, and points of rest end them") {
   CHECK(render::streamlines([](const Vector2d&) { return Vector2d(0, 0); }, window, window, {}).empty());
-  const auto lines = render::streamlines([](const Vector2d& p) { return Vector2d(-p.x(), -p.y()); }, window, window, {});
+  const auto lines =
+      render::streamlines([](const Vector2d& p) { return Vector2d(-p.x(), -p.y()); }, window, window, {});
   CHECK(lines.size() > 8);
 }
 

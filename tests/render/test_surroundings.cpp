@@ -45,7 +45,8 @@ TEST_CASE("arrows point along the flow and none is drawn where it rests") {
 
 TEST_CASE("an arrow that would touch a membrane's picture is left out, one beside it is drawn") {
   render::Renderer renderer = software();
-  const render::Frame without = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), surfaces::bare_view(400, 300));
+  const render::Frame without =
+      surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), surfaces::bare_view(400, 300));
   const auto changed = [&](double x, double y) {  // px that an arrow in the plane y changes
     render::Frame frame = without;
     frame.view.flow_arrows = true;
@@ -62,7 +63,8 @@ TEST_CASE("an arrow that would touch a membrane's picture is left out, one besid
 TEST_CASE("a camera that follows through a resting fluid shows beads, which stay where they are") {
   render::Renderer renderer = software();
   std::vector<render::StateSummary> states;
-  for (const double x : {0.0, 40.0}) states.push_back(render::summarize(surfaces::state_of({surfaces::sphere({x, 0, 0})})));
+  for (const double x : {0.0, 40.0})
+    states.push_back(render::summarize(surfaces::state_of({surfaces::sphere({x, 0, 0})})));
   render::ViewParameters view = surfaces::bare_view(400, 300);
   view.flow_arrows = true;
   const auto beads = [&](const std::string& follow) {
@@ -109,7 +111,8 @@ TEST_CASE("every overlay is drawn where arrows are kept away from it") {
   using render::Overlay;
   constexpr int width = 960, height = 540;
   const render::Font font;
-  for (const Overlay overlay : {Overlay::colour_bar, Overlay::triad, Overlay::inset, Overlay::profile, Overlay::title, Overlay::panel}) {
+  for (const Overlay overlay :
+       {Overlay::colour_bar, Overlay::triad, Overlay::inset, Overlay::profile, Overlay::title, Overlay::panel}) {
     render::Frame frame;
     frame.view = surfaces::bare_view(width, height);
     frame.view.triad = overlay == Overlay::triad;

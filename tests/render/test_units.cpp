@@ -1,4 +1,5 @@
-// Pictures know no unit of length and no place: the same scene in metres, in micrometres or far from the origin looks the same.
+// Pictures know no unit of length and no place: the same scene in metres, in micrometres or far from the origin looks
+// the same.
 #include "render/draw/draw.h"
 #include "render/scene/arrow_net.h"
 
@@ -22,9 +23,12 @@ render::Frame frame_in(double unit, const Vec3& shift, const std::string& style,
   const sim::State state = surfaces::state_of(
       {moved([=](const Vec3& s) -> Vec3 {
          const double q = s.x() * s.x() + s.y() * s.y();
-         return Vec3(-1.25, 0, 0.5) + tilted * (1.19 * Vec3(s.x(), s.y(), 0.51 * s.z() * (0.207 + 2.003 * q - 1.123 * q * q)));
+         return Vec3(-1.25, 0, 0.5) +
+                tilted * (1.19 * Vec3(s.x(), s.y(), 0.51 * s.z() * (0.207 + 2.003 * q - 1.123 * q * q)));
        }),
-       moved([=](const Vec3& s) -> Vec3 { return Vec3(1.25, 0, -0.5) + lying * Vec3(0.82, 0.82, 1.5).cwiseProduct(s); })});
+       moved([=](const Vec3& s) -> Vec3 {
+         return Vec3(1.25, 0, -0.5) + lying * Vec3(0.82, 0.82, 1.5).cwiseProduct(s);
+       })});
   render::ViewParameters view;
   view.size = {240, 180};
   view.style = style;
@@ -33,14 +37,17 @@ render::Frame frame_in(double unit, const Vec3& shift, const std::string& style,
   render::Frame frame = surfaces::frame_of(state, view);
   const render::StateSummary summary = render::summarize(state);
   frame.captions.scale_length = unit;
-  frame.arrows.points = render::arrow_points(render::frame_trajectory(std::span(&summary, 1), frame.view), summary.centroid);
+  frame.arrows.points =
+      render::arrow_points(render::frame_trajectory(std::span(&summary, 1), frame.view), summary.centroid);
   frame.arrows.velocities = sim::Matrix::Zero(frame.arrows.points.rows(), 3);
   frame.arrows.velocities.col(0) = frame.arrows.points.col(2).array() - shift.z();
   for (std::size_t v = 0; v < frame.bodies.size(); ++v) {
-    for (const glm::dvec3& p : frame.bodies[v].mesh.position) frame.bodies[v].mesh.scalar.push_back((p.z - shift.z()) / unit);
+    for (const glm::dvec3& p : frame.bodies[v].mesh.position)
+      frame.bodies[v].mesh.scalar.push_back((p.z - shift.z()) / unit);
     frame.bodies[v].cut = render::make_cut(state.vesicles[v].position, -Vec3::UnitY(), 0);
   }
-  frame.legend = render::Legend{"z", -1, 1, render::colour_table(render::find_colour_map("viridis")), false, false, false};
+  frame.legend =
+      render::Legend{"z", -1, 1, render::colour_table(render::find_colour_map("viridis")), false, false, false};
   frame.view.colour_bar = false;
   return frame;
 }
@@ -67,7 +74,8 @@ TEST_CASE("a scene in any unit of length gives the picture of the same scene in 
       // A factor of two changes no digit, and no pixel.
       for (const double unit : {std::exp2(40)})
         CHECK(render::draw_frame(renderer, frame_in(unit, Vec3::Zero(), style, projection)) == radii);
-      // Others round the last digit of coordinates anew: a sample at an edge may fall to its other side, a quarter of a pixel.
+      // Others round the last digit of coordinates anew: a sample at an edge may fall to its other side, a quarter of a
+      // pixel.
       for (const double unit : {1e-12, 2.8e-6, 1e6}) {
         INFO(style << ", " << projection << ", radius " << unit);
         CHECK(different(radii, render::draw_frame(renderer, frame_in(unit, Vec3::Zero(), style, projection)), 2) <= 10);

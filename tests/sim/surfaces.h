@@ -2,8 +2,8 @@
 #pragma once
 
 #include "sim/membrane/membrane.h"
-#include "sim/surface/shapes.h"
 #include "sim/stepping/stepper.h"
+#include "sim/surface/shapes.h"
 
 #include <cmath>
 #include <numbers>
@@ -56,7 +56,8 @@ inline sim::Coefficients smooth_field(int order, int degree, int fields, unsigne
 }
 
 /// The right-hand side of (39a) for a vesicle by itself at time 0.
-inline sim::Coefficients forcing(const sim::Membrane& m, std::span<const sim::FlowParameters> flows, const sim::Vec3& gravity) {
+inline sim::Coefficients forcing(const sim::Membrane& m, std::span<const sim::FlowParameters> flows,
+                                 const sim::Vec3& gravity) {
   sim::Coefficients r = m.bases.field.analyze(sim::background_velocity(flows, 0, m.geometry.x.value));
   r.values += m.layers.single.apply(sim::known_force(m, gravity)).values;
   return r;

@@ -50,7 +50,8 @@ TEST_CASE("derivatives of x y z on the sphere are the exact ones") {
       for (int i = 0; i < basis.latitudes(); ++i) f(i + basis.latitudes() * j, basis.theta()[i], basis.phi()[j]);
   };
   // x y z = sin^2 t cos t sin 2f / 2
-  each([&](int k, double t, double f) { samples(k, 0) = std::pow(std::sin(t), 2) * std::cos(t) * std::sin(2 * f) / 2; });
+  each(
+      [&](int k, double t, double f) { samples(k, 0) = std::pow(std::sin(t), 2) * std::cos(t) * std::sin(2 * f) / 2; });
   const SecondDerivatives d = basis.second(basis.analyze(samples));
   double worst = 0;
   each([&](int k, double t, double f) {
@@ -88,8 +89,12 @@ TEST_CASE("values at scattered points and on any lattice agree with the grid, po
   CHECK((points.t - grid.t).cwiseAbs().maxCoeff() < 1e-12);
   CHECK((points.f - grid.f).cwiseAbs().maxCoeff() < 1e-12);
   const SecondDerivatives bent = sample_points_second(c, direction), exact = basis.second(c);
-  for (const auto& [own, grids] : {std::pair{&bent.value, &exact.value}, {&bent.t, &exact.t}, {&bent.f, &exact.f},
-                                   {&bent.tt, &exact.tt}, {&bent.tf, &exact.tf}, {&bent.ff, &exact.ff}})
+  for (const auto& [own, grids] : {std::pair{&bent.value, &exact.value},
+                                   {&bent.t, &exact.t},
+                                   {&bent.f, &exact.f},
+                                   {&bent.tt, &exact.tt},
+                                   {&bent.tf, &exact.tf},
+                                   {&bent.ff, &exact.ff}})
     CHECK((*own - *grids).cwiseAbs().maxCoeff() < 1e-11);
   for (int j = 1; j < basis.longitudes(); ++j)  // one value at each pole, whatever phi
     CHECK((lattice.value.row(theta.size() * j) - lattice.value.row(0)).norm() < 1e-14);

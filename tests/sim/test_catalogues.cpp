@@ -1,11 +1,11 @@
-// Every row of every catalogue of the simulation against what its name and its meaning promise, from closed forms. A row without
-// an entry here fails.
+// Every row of every catalogue of the simulation against what its name and its meaning promise, from closed forms. A
+// row without an entry here fails.
+#include "../support/temporary_folder.h"
 #include "sim/measures/fields.h"
 #include "sim/membrane/flows.h"
 #include "sim/surface/geometry.h"
 #include "sim/surface/shapes.h"
 #include "surfaces.h"
-#include "../support/temporary_folder.h"
 #include "tests/support/catch.h"
 
 #include <fstream>
@@ -71,10 +71,9 @@ TEST_CASE("every field of the catalogue has its closed form on a sphere that tur
 TEST_CASE("every field of the catalogue has the dimension by which it is divided") {
   // Lengths times s, times times t, forces times g: a state in other units.
   const double s = 3, t = 0.5, g = 7;
-  const std::map<FieldScale, double> factors{{FieldScale::length, s},      {FieldScale::curvature, 1 / s},
-                                             {FieldScale::square_curvature, 1 / (s * s)},
-                                             {FieldScale::tension, g / s}, {FieldScale::force, g / (s * s)},
-                                             {FieldScale::velocity, s / t}};
+  const std::map<FieldScale, double> factors{
+      {FieldScale::length, s},      {FieldScale::curvature, 1 / s},   {FieldScale::square_curvature, 1 / (s * s)},
+      {FieldScale::tension, g / s}, {FieldScale::force, g / (s * s)}, {FieldScale::velocity, s / t}};
   const auto state = [](double length, double time, double force) {
     State all;
     for (const double z : {-1.5, 1.5}) {
@@ -114,7 +113,8 @@ TEST_CASE("every shape of the catalogue is the surface that its meaning says") {
         out << n << ' ' << m << ' ' << row[0] << ' ' << row[1] << ' ' << row[2] << '\n';
       }
   }
-  // What is 0 on the surface, its symmetry axis along z. Spheroids of the area 4 pi; for 0.85 the prolate one is tested elsewhere.
+  // What is 0 on the surface, its symmetry axis along z. Spheroids of the area 4 pi; for 0.85 the prolate one is tested
+  // elsewhere.
   const auto spheroid = [](bool prolate) {
     return [prolate](const Vec3& x) {
       const Vec3 a = spheroid_axes(0.85, prolate);
@@ -162,7 +162,8 @@ TEST_CASE("every shape of the catalogue is the surface that its meaning says") {
     const Matrix points = basis.synthesize(x).values;
     if (const Equation& equation = exact.at(row.name)) {
       double worst = 0;
-      for (Eigen::Index k = 0; k < points.rows(); ++k) worst = std::max(worst, std::abs(equation(points.row(k).transpose())));
+      for (Eigen::Index k = 0; k < points.rows(); ++k)
+        worst = std::max(worst, std::abs(equation(points.row(k).transpose())));
       CHECK(worst < 1e-4);  // a surface of degree 12 holds the harmonic one to this, the others exactly
     } else if (row.name == "file") {
       CHECK((x.values - table.values).norm() < 1e-14);

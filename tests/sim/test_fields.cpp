@@ -77,7 +77,8 @@ TEST_CASE("the tension is that of the state, and a constant one on a sphere pres
   CHECK((samples("tension-force", state).field.array() - 2 * sigma / radius).abs().maxCoeff() < 1e-10);
 }
 
-TEST_CASE("a vesicle that moves as a whole has no velocity relative to itself, and one that turns only along the membrane") {
+TEST_CASE(
+    "a vesicle that moves as a whole has no velocity relative to itself, and one that turns only along the membrane") {
   const Vec3 spin(0, 0.7, 0), drift(5, 1, -2);
   State state = state_of({at(test::ellipsoid(Vec3::Constant(1.2), order), Vec3::Zero())});
   VesicleState& v = state.vesicles[0];
@@ -108,6 +109,7 @@ TEST_CASE("the distance between two spheres is known at every point, near and fa
 TEST_CASE("a lone vesicle has no neighbour, and an unknown field is answered with the nearest name") {
   Plans plans;
   const State state = state_of({at(test::ellipsoid(Vec3::Ones(), order), Vec3::Zero())});
-  CHECK_THROWS_WITH(membrane_field(plans, find_field("neighbour-distance"), state, 0, 1), Catch::Contains("two vesicles"));
+  CHECK_THROWS_WITH(membrane_field(plans, find_field("neighbour-distance"), state, 0, 1),
+                    Catch::Contains("two vesicles"));
   CHECK_THROWS_WITH(find_field("tenson"), Catch::Contains("did you mean 'tension'"));
 }

@@ -32,8 +32,7 @@ TEST_CASE("the tension force is dual to the surface divergence") {
   const Geometry g = geometry(field, x);
   const FirstDerivatives d = field.first(u);
   const double left = integrate(g, field.synthesize(sigma).values.col(0).cwiseProduct(surface_divergence(g, d.t, d.f)));
-  const double right =
-      -integrate(g, tension_force({field, full}, g, sigma).cwiseProduct(d.value).rowwise().sum());
+  const double right = -integrate(g, tension_force({field, full}, g, sigma).cwiseProduct(d.value).rowwise().sum());
   CHECK(left == Approx(right).epsilon(1e-8));
 }
 
@@ -51,7 +50,8 @@ TEST_CASE("the linear change of H is its first variation, and a rigid motion lea
   CHECK((change - exact).cwiseAbs().maxCoeff() < 1e-5 * exact.cwiseAbs().maxCoeff());
   Matrix rigid(field.points(), 3);
   for (Eigen::Index k = 0; k < rigid.rows(); ++k)
-    rigid.row(k) = Vec3(0.3, -1, 0.7).cross(Vec3(g.x.value.row(k).transpose())).transpose() + Eigen::RowVector3d(1, 2, 3);
+    rigid.row(k) =
+        Vec3(0.3, -1, 0.7).cross(Vec3(g.x.value.row(k).transpose())).transpose() + Eigen::RowVector3d(1, 2, 3);
   CHECK(curvature_change(full, g, slope, rigid).cwiseAbs().maxCoeff() < 1e-5 * g.H.cwiseAbs().maxCoeff());
 }
 
@@ -97,7 +97,8 @@ TEST_CASE("every flow of the catalogue is free of divergence and driven by at mo
       };
       const auto laplacian = [&](const Vec3& at) {
         Vec3 sum = Vec3::Zero();
-        for (int d = 0; d < 3; ++d) sum += (u(at + h * Vec3::Unit(d)) + u(at - h * Vec3::Unit(d)) - 2 * u(at)) / (h * h);
+        for (int d = 0; d < 3; ++d)
+          sum += (u(at + h * Vec3::Unit(d)) + u(at - h * Vec3::Unit(d)) - 2 * u(at)) / (h * h);
         return sum;
       };
       const Vec3 here(0.3, -0.7, 1.1), there(-1.4, 0.2, 0.6);

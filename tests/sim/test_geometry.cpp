@@ -1,6 +1,6 @@
+#include "sim/measures/diagnostics.h"
 #include "sim/surface/correction.h"
 #include "sim/surface/dealias.h"
-#include "sim/measures/diagnostics.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 
@@ -23,7 +23,8 @@ TEST_CASE("a sphere of radius 2 has H = -1/2, K = 1/4 and an outward normal") {
 }
 
 TEST_CASE("Gauss-Bonnet: the Gaussian curvature of any of our surfaces adds up to 4 pi") {
-  for (const Coefficients& x : {test::surface("prolate", 0.85, 12), test::surface("biconcave", 0.65, 12), test::potato(12)}) {
+  for (const Coefficients& x :
+       {test::surface("prolate", 0.85, 12), test::surface("biconcave", 0.65, 12), test::potato(12)}) {
     const Geometry g = fine_geometry(x);
     CHECK(integrate(g, g.K) == Approx(4 * pi).epsilon(1e-9));  // quadrature error of the 48-grid
   }
@@ -55,7 +56,8 @@ TEST_CASE("the divergence of the gradient is the Laplacian") {
   const Geometry g = geometry(basis, x);
   const Coefficients gradient = full.analyze(surface_gradient(g, basis.first(f)));
   const FirstDerivatives d = full.first(gradient);
-  CHECK((surface_divergence(g, d.t, d.f) - surface_laplacian(g, basis.second(f))).cwiseAbs().maxCoeff() < 1e-5);  // gradient cut at degree 40
+  CHECK((surface_divergence(g, d.t, d.f) - surface_laplacian(g, basis.second(f))).cwiseAbs().maxCoeff() <
+        1e-5);  // gradient cut at degree 40
 }
 
 TEST_CASE("areas, volumes and energies of the catalogue's shapes are the exact ones") {

@@ -1,6 +1,6 @@
 // The state of a vesicle and its past: whoever changes the grid, the shape or the file must take all of it along.
-#include "sim/stepping/simulate.h"
 #include "../support/temporary_folder.h"
+#include "sim/stepping/simulate.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 
@@ -8,7 +8,8 @@ using namespace sim;
 
 namespace {
 
-/// s' -> R s': grid points move along the membrane as a rigid turn of the parameter sphere, which every degree carries exactly.
+/// s' -> R s': grid points move along the membrane as a rigid turn of the parameter sphere, which every degree carries
+/// exactly.
 Relabelling parameter_turn(int order, const Eigen::Matrix3d& turn) {
   Relabelling r;
   r.map = fresh_labels(order);
@@ -43,7 +44,8 @@ TEST_CASE("a turn of the parameters between two steps moves the grid points and 
   Dynamics turned = before;
   const Relabelling r = parameter_turn(8, Eigen::AngleAxisd(0.8, Vec3(1, 2, -0.5).normalized()).toRotationMatrix());
   carry(plans, r, turned.vesicles[0]);
-  const Dynamics after = take_step(s, before, 0.08).value().dynamics, other = take_step(s, turned, 0.08).value().dynamics;
+  const Dynamics after = take_step(s, before, 0.08).value().dynamics,
+                 other = take_step(s, turned, 0.08).value().dynamics;
   for (std::size_t k = 0; k < 2; ++k) {
     const VesicleDynamics &a = after.vesicles[k], &b = other.vesicles[k];
     const double moved = (a.position.values - before.vesicles[k].position.values).norm();
@@ -82,7 +84,8 @@ TEST_CASE("every field of a vesicle is carried by a relabelling, and nothing els
   visit(before, collect(was));
   visit(d.vesicles[0], collect(is));
   REQUIRE(was.size() == is.size());
-  REQUIRE(was.size() == 7);  // position, one past position, velocity, tension, labels, position and velocity of the saved state
+  REQUIRE(was.size() ==
+          7);  // position, one past position, velocity, tension, labels, position and velocity of the saved state
   const Matrix parameters = tracer_directions();
   const Matrix at = mapped(r, parameters);
   for (std::size_t k = 0; k < was.size(); ++k) {
@@ -174,8 +177,8 @@ TEST_CASE("every scheme estimates the error of its step, and the estimate falls 
   const auto [half_estimate, half_error] = estimate_and_error(0.05);
   INFO(estimate << " for " << error << ", " << half_estimate << " for " << half_error);
   const double order = scheme == "bdf2" ? 3 : 2;
-  // To leading order the two are equal; the rest is of the next power of a step that is no small one. Where tension and position
-  // come one after the other the error has further terms of the same order, which nothing tells.
+  // To leading order the two are equal; the rest is of the next power of a step that is no small one. Where tension and
+  // position come one after the other the error has further terms of the same order, which nothing tells.
   const bool one_by_one = scheme == "block-jacobi" || scheme == "explicit";
   CHECK(half_estimate / half_error > (one_by_one ? 0.1 : 0.65));
   CHECK(half_estimate / half_error < 1.35);

@@ -33,7 +33,8 @@ std::pair<double, double> near_errors(const Coefficients& x, double gap, NearOrd
   const RotationPlan plan(x.order);
   double single = 0, dual = 0;
   for (const Target& t : targets(x, gap)) {
-    const PointRow row = near_row(plan, x, t.x, t.nearest, order, true), exact = near_row(plan, x, t.x, t.nearest, {220, 300}, true);
+    const PointRow row = near_row(plan, x, t.x, t.nearest, order, true),
+                   exact = near_row(plan, x, t.x, t.nearest, {220, 300}, true);
     const Vec3 s = apply_row(exact.single, x.values);
     single = std::max(single, (apply_row(row.single, x.values) - s).norm() / s.norm());
     dual = std::max(dual, (apply_row(row.dual, x.values) - apply_row(exact.dual, x.values)).norm() / 0.5);
@@ -71,7 +72,8 @@ TEST_CASE("the nearest point of an ellipsoid is found from outside and from insi
     }
 }
 
-TEST_CASE("the side of a membrane is known over its poles, where the coordinates end, from starts there and beside them") {
+TEST_CASE(
+    "the side of a membrane is known over its poles, where the coordinates end, from starts there and beside them") {
   const Coefficients x = test::ellipsoid({1.5, 1, 0.7}, 4);
   for (const Vec3& pole : {Vec3(0, 0, 1), Vec3(0, 0, -1)})
     for (const Vec3& start : {pole, Vec3(pole + Vec3(0.07, -0.03, 0))})
@@ -84,7 +86,8 @@ TEST_CASE("the side of a membrane is known over its poles, where the coordinates
       }
 }
 
-TEST_CASE("the nearest point of a disc is the foot of the normal to rounding, from a start of a grid point's distance") {
+TEST_CASE(
+    "the nearest point of a disc is the foot of the normal to rounding, from a start of a grid point's distance") {
   const Coefficients x = test::surface("biconcave", 0.65, 8);
   const Basis basis(8, 11);
   const Geometry g = geometry(basis, x);
@@ -94,7 +97,8 @@ TEST_CASE("the nearest point of a disc is the foot of the normal to rounding, fr
       const Vec3 foot = g.x.value.row(k).transpose(), start = s.row(k).transpose() + 0.07 * Vec3(0.6, -0.5, 0.6);
       const NearestPoint nearest = nearest_point(x, foot + gap * g.n.row(k).transpose(), start);
       CHECK(nearest.distance == Approx(std::abs(gap)).epsilon(1e-12));
-      CHECK((nearest.position - foot).norm() < 1e-9);  // a root of rounding errors where the distance is flat: 1e-8 of 1e-16
+      CHECK((nearest.position - foot).norm() <
+            1e-9);  // a root of rounding errors where the distance is flat: 1e-8 of 1e-16
       CHECK(nearest.inside == (gap < 0));
     }
 }
@@ -118,7 +122,8 @@ TEST_CASE("the near rule meets the same bounds on the biconcave disc at 96 x 160
 }
 
 TEST_CASE("the near rule gives at once what its rows give") {
-  const Coefficients x = test::surface("biconcave", 0.65, 7), force = test::smooth_field(7, 7, 3, 2), dual = test::smooth_field(7, 7, 3, 4);
+  const Coefficients x = test::surface("biconcave", 0.65, 7), force = test::smooth_field(7, 7, 3, 2),
+                     dual = test::smooth_field(7, 7, 3, 4);
   const RotationPlan plan(7);
   for (const Target& t : targets(x, 0.02)) {
     const PointRow row = near_row(plan, x, t.x, t.nearest, {20, 24}, true);
@@ -138,7 +143,8 @@ TEST_CASE("the block scheme of a close pair differs from the coupled one by the 
     return Matrix(test::advanced(s, initial_dynamics(s), dt, int(std::lround(0.2 / dt))).vesicles[0].position.values);
   };
   const Matrix exact = position("bdf2", 0.025);
-  const double coarse = (position("block-implicit", 0.1) - exact).norm(), fine = (position("block-implicit", 0.05) - exact).norm();
+  const double coarse = (position("block-implicit", 0.1) - exact).norm(),
+               fine = (position("block-implicit", 0.05) - exact).norm();
   CHECK(coarse / fine == Approx(2).margin(0.5));
 }
 
@@ -153,7 +159,8 @@ TEST_CASE("the double layer of a constant is 0 just outside and -1 just inside")
     }
 }
 
-TEST_CASE("Green's identity: a Stokes flow from within gives S[traction] - D[u] of its own values outside, near and far") {
+TEST_CASE(
+    "Green's identity: a Stokes flow from within gives S[traction] - D[u] of its own values outside, near and far") {
   // With f = traction of the exterior flow on the surface, exterior u = -S[f] + D[u] in the signs of conventions.md;
   // for a translating sphere f = -3/(2a) U is constant and D[U] vanishes outside: u = (3/2) S[U].
   const Coefficients x = test::surface("sphere", 1, 8), f = test::constant_field(8, {1.5, 0, 0});
@@ -182,8 +189,7 @@ TEST_CASE("the smooth rule and the near rule agree where both are accurate") {
     return induced_velocity(plan_interaction(plans, x, materials, {order, true, {48, 64}, spacings, 0}), densities);
   };
   const auto near = velocity(100, 0), smooth = velocity(0, 60);
-  for (int k = 0; k < 2; ++k)
-    CHECK((near[k].values - smooth[k].values).norm() < 1e-7 * near[k].values.norm());
+  for (int k = 0; k < 2; ++k) CHECK((near[k].values - smooth[k].values).norm() < 1e-7 * near[k].values.norm());
 }
 
 TEST_CASE("two sinking spheres far apart follow the method of reflections with an error of fourth order") {
@@ -320,7 +326,8 @@ TEST_CASE("a pair gives the same bits with one and with two threads") {
   CHECK(same);
 }
 
-TEST_CASE("placements put as many vesicles as asked at the volume fraction asked, without overlap, and alike each time") {
+TEST_CASE(
+    "placements put as many vesicles as asked at the volume fraction asked, without overlap, and alike each time") {
   for (const auto& row : placement_catalogue()) {
     if (row.name == "file") continue;
     Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 4), 0.1, 1);
@@ -347,7 +354,8 @@ TEST_CASE("placements put as many vesicles as asked at the volume fraction asked
   }
 }
 
-TEST_CASE("a volume fraction that cannot be placed is refused, at once where it is hopeless, else with how many could") {
+TEST_CASE(
+    "a volume fraction that cannot be placed is refused, at once where it is hopeless, else with how many could") {
   Scene scene = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
   PlacementParameters p;
   p.kind = "box";
@@ -398,8 +406,7 @@ TEST_CASE("repulsion pushes two vesicles apart with opposite forces, and not at 
   const auto force = repulsion(w, 2, 0.1);
   const Basis basis(8, 20);
   std::vector<Vec3> net;
-  for (int k = 0; k < 2; ++k)
-    net.push_back(basis.synthesize(force[k]).values.transpose() * geometry(basis, x[k]).dA);
+  for (int k = 0; k < 2; ++k) net.push_back(basis.synthesize(force[k]).values.transpose() * geometry(basis, x[k]).dA);
   CHECK(net[0][0] < -1e-3);
   CHECK((net[0] + net[1]).norm() < 1e-9);
   CHECK(repulsion(w, 0, 0.1)[0].values.norm() == 0);

@@ -19,7 +19,9 @@ Scene twist_scene(const char* mode) {
 
 /// Parameters s where the label field has the value `label`, near `start`: Newton on the sphere with sampled slopes.
 Vec3 where_label_is(const Coefficients& labels, const Vec3& label, Vec3 s) {
-  const auto value = [&](const Vec3& at) { return Vec3(sample_points(labels, at.normalized().transpose()).row(0).normalized().transpose()); };
+  const auto value = [&](const Vec3& at) {
+    return Vec3(sample_points(labels, at.normalized().transpose()).row(0).normalized().transpose());
+  };
   for (int k = 0; k < 30; ++k) {
     const Vec3 a = s.unitOrthogonal(), b = s.cross(a);
     const double h = 1e-5;
@@ -113,7 +115,8 @@ namespace {
 
 /// Between two saved states in the later one's parametrisation: the cubic that has both positions and velocities.
 Coefficients between(const VesicleState& b, double h, double u, bool rate) {
-  const Matrix &x0 = b.position_before.values, &x1 = b.position.values, &v0 = b.velocity_before.values, &v1 = b.velocity.values;
+  const Matrix &x0 = b.position_before.values, &x1 = b.position.values, &v0 = b.velocity_before.values,
+               &v1 = b.velocity.values;
   const double r = 1 - u;
   if (rate) return {b.position.order, 6 * u * r / h * (x1 - x0) + r * (1 - 3 * u) * v0 + u * (3 * u - 2) * v1};
   return {b.position.order, r * r * (1 + 2 * u) * x0 + u * u * (3 - 2 * u) * x1 + h * u * r * (r * v0 - u * v1)};
@@ -128,7 +131,8 @@ TEST_CASE("labels are material: over a tank-treading period they stay with point
   Dynamics d = initial_dynamics(model);
   mark_saved(d, evaluate(model, d).value());
   const Matrix dots = tracer_directions();
-  Matrix carried = sample_points(d.vesicles[0].position, dots), near = dots;  // points in space, and parameters to start from
+  Matrix carried = sample_points(d.vesicles[0].position, dots),
+         near = dots;  // points in space, and parameters to start from
   double worst = 0, turned = 0;
   Vec3 before = carried.row(0).transpose();
   // Until the dot that started at +x, which lies in the plane of shear, has gone once round.
@@ -141,8 +145,10 @@ TEST_CASE("labels are material: over a tank-treading period they stay with point
     mark_saved(d, state);
     const VesicleState& b = state.vesicles[0];
     const double h = d.time - start;
-    const Coefficients first = between(b, h, 0, false), middle = between(b, h, 0.5, false), end = between(b, h, 1, false);
-    const Coefficients first_rate = between(b, h, 0, true), middle_rate = between(b, h, 0.5, true), end_rate = between(b, h, 1, true);
+    const Coefficients first = between(b, h, 0, false), middle = between(b, h, 0.5, false),
+                       end = between(b, h, 1, false);
+    const Coefficients first_rate = between(b, h, 0, true), middle_rate = between(b, h, 0.5, true),
+                       end_rate = between(b, h, 1, true);
     for (Eigen::Index k = 0; k < carried.rows(); ++k) {
       Vec3 s = b.tracers.row(k).transpose();  // only where the search for the nearest point begins
       const auto velocity = [&](const Coefficients& x, const Coefficients& rate, const Vec3& at) {
@@ -156,21 +162,24 @@ TEST_CASE("labels are material: over a tank-treading period they stay with point
       near.row(k) = s.transpose();
     }
     const Vec3 now = carried.row(0).transpose();
-    turned += std::abs(std::atan2(before.z() * now.x() - before.x() * now.z(), before.x() * now.x() + before.z() * now.z()));
+    turned +=
+        std::abs(std::atan2(before.z() * now.x() - before.x() * now.z(), before.x() * now.x() + before.z() * now.z()));
     before = now;
     worst = std::max(worst, (sample_points(b.position, b.tracers) - carried).rowwise().norm().maxCoeff());
   }
   CHECK(turned >= 2 * test::pi);
   const VesicleDynamics& v = d.vesicles[0];
   CHECK(v.relabelled > 0);
-  INFO("period " << d.time << ", relabelled " << v.relabelled << " times, laid anew " << v.labels_laid << " times, dots " << worst);
+  INFO("period " << d.time << ", relabelled " << v.relabelled << " times, laid anew " << v.labels_laid
+                 << " times, dots " << worst);
   CHECK(worst < 1e-3);  // R0 = 1; what thirty relabellings lose at p = 12 is part of it
   // By the label field, where it is resolved: the point whose label is a dot's direction.
   REQUIRE(v.labels_laid == 0);
   double by_label = 0;
   for (Eigen::Index k = 0; k < dots.rows(); ++k) {
     const Vec3 s = where_label_is(v.labels, dots.row(k).transpose(), near.row(k).transpose());
-    by_label = std::max(by_label, (Vec3(sample_points(v.position, s.transpose()).row(0)) - Vec3(carried.row(k))).norm());
+    by_label =
+        std::max(by_label, (Vec3(sample_points(v.position, s.transpose()).row(0)) - Vec3(carried.row(k))).norm());
   }
   INFO("by labels " << by_label);
   CHECK(by_label < 1e-3);

@@ -45,7 +45,8 @@ TEST_CASE("a nearly spherical drop relaxes at the rate -40 (lambda+1)/((2 lambda
       if (lambda != 1) v -= (1 - lambda) * m.layers.dual.apply(u).values;
       return Vector(v.reshaped());
     };
-    const GmresResult s = gmres(left, [](const Vector& v) { return v; }, right.values.reshaped(), Vector::Zero(3 * nc), 1e-13, 80);
+    const GmresResult s = gmres(
+        left, [](const Vector& v) { return v; }, right.values.reshaped(), Vector::Zero(3 * nc), 1e-13, 80);
     const Matrix u = m.bases.field.synthesize({p, s.solution.reshaped(nc, 3)}).values;
     const double rate = radial_rate(m.bases.field, u, m.geometry, 2) / amplitude(m.bases.field, m.geometry, 2);
     const double radius = m.radius;  // the rate goes with 1/R
@@ -63,7 +64,8 @@ TEST_CASE("two modes of a nearly spherical vesicle relax at the exact rates, wit
     const Solve s = solve_system(m, 0, test::forcing(m, {}, Vec3::Zero()), test::at_rest(p), 1e-12);
     REQUIRE(s.converged);
     const Matrix u = m.bases.field.synthesize(s.motion.velocity).values;
-    // Rate of a_n: -(kappa_b / 2 mu R^3) k_n (n(n+1) + s), k_n = (n-1)n(n+1)(n+2)/D_n; s from sum (n-1)(n+2) a_n a_n' = 0.
+    // Rate of a_n: -(kappa_b / 2 mu R^3) k_n (n(n+1) + s), k_n = (n-1)n(n+1)(n+2)/D_n; s from sum (n-1)(n+2) a_n a_n' =
+    // 0.
     const auto k = [&](double n) {
       return (n - 1) * n * (n + 1) * (n + 2) /
              (2 * n * n * n + 3 * n * n + 4 + lambda * (2 * n * n * n + 3 * n * n - 5));

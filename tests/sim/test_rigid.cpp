@@ -1,8 +1,8 @@
 // What must be exact: rigid motions, spheres, and units.
+#include "sim/measures/diagnostics.h"
 #include "sim/membrane/flows.h"
 #include "sim/stepping/warnings.h"
 #include "sim/suspension/velocity.h"
-#include "sim/measures/diagnostics.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 
@@ -83,7 +83,8 @@ TEST_CASE("a frame carries positions as its equations of motion say") {
   Frame f{{{1, 0.5, -2}, {0.3, -1.1, 0.4}, {2, 1, 0}}, {}};
   f.drift << 0.2, -0.5, 1, 0.3, 0, 0.1, -0.4, 0.6, -0.2;
   for (const double time : {1e-3, 0.7, -4.0}) {
-    // d/dt of the carried position is the frame's motion where it is: central differences, whose error is of the order of h^2.
+    // d/dt of the carried position is the frame's motion where it is: central differences, whose error is of the order
+    // of h^2.
     const double h = 1e-4;
     const Coefficients now = carried(f, time, x);
     const RigidBody body = rigid_body(now);
@@ -156,7 +157,8 @@ TEST_CASE("spheres turn rigidly with half the shear rate, wherever they are") {
   const Dynamics start = initial_dynamics(s), d = test::advanced(s, start, dt, steps);
   const Matrix arm = rigid_body(d.vesicles[0].position).arm.values;
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.5 * dt * steps, Vec3::UnitY()).toRotationMatrix();
-  // The constant tension lets it be out of round by 0.7e-5 of its radius; each axis has sqrt(4 pi / 3) of the coefficients.
+  // The constant tension lets it be out of round by 0.7e-5 of its radius; each axis has sqrt(4 pi / 3) of the
+  // coefficients.
   CHECK((arm - rigid_body(start.vesicles[0].position).arm.values * turn.transpose()).norm() < 2e-4);
   CHECK(rigid_body(d.vesicles[0].position).centre[0] == Approx(height).margin(1e-8));
   CHECK(scene_warnings(s, d).empty());  // its spectrum is rounding
@@ -166,11 +168,13 @@ TEST_CASE("spheres turn rigidly with half the shear rate, wherever they are") {
   const Basis& basis = plans.basis(6, 8);
   const Matrix sigma = basis.synthesize(state.vesicles[0].tension).values;
   const Matrix n = basis.synthesize({6, arm}).values;
-  CHECK((sigma + 2.5 * n.col(0).cwiseProduct(n.col(2))).cwiseAbs().maxCoeff() < 0.01);  // of 1.25; the tension holds only to 1e-5
+  CHECK((sigma + 2.5 * n.col(0).cwiseProduct(n.col(2))).cwiseAbs().maxCoeff() <
+        0.01);  // of 1.25; the tension holds only to 1e-5
 }
 
 TEST_CASE("nearly round vesicles deform within their excess area without a failed step") {
-  // Quasi-spherical: the radius is out of round by about 0.58 sqrt(1 - nu) (RMS), so the longest axis by less than 1.5 of that.
+  // Quasi-spherical: the radius is out of round by about 0.58 sqrt(1 - nu) (RMS), so the longest axis by less than 1.5
+  // of that.
   const double lambda = GENERATE(0.1, 1.0, 10.0);
   for (const double excess : {1e-9, 1e-7, 1e-5, 1e-3}) {
     VesicleParameters v = test::vesicle("prolate", 1 - excess, 6, lambda);
@@ -179,7 +183,8 @@ TEST_CASE("nearly round vesicles deform within their excess area without a faile
     const Model s = make_model(scene, plans);
     Dynamics d = initial_dynamics(s);
     while (d.time < 0.5) d = take_step(s, d, std::min(d.dt_limit, 0.1)).value().dynamics;
-    const VesicleMeasures m = measure(plans, evaluate(s, d).value().vesicles[0], d.vesicles[0].area, d.vesicles[0].volume);
+    const VesicleMeasures m =
+        measure(plans, evaluate(s, d).value().vesicles[0], d.vesicles[0].area, d.vesicles[0].volume);
     CHECK(std::abs(m.axes[0] - 1) < 1.5 * std::sqrt(excess) + 1e-4);
     CHECK(std::abs(m.volume_error) < 1e-12);
     CHECK(std::abs(m.area_error) < 1e-8);
@@ -201,8 +206,8 @@ TEST_CASE("two sinking spheres fall side by side, round and faster than one") {
   const State state = evaluate(s, d).value();
   for (std::size_t k = 0; k < 2; ++k) {
     const VesicleMeasures m = measure(plans, state.vesicles[k], d.vesicles[k].area, d.vesicles[k].volume);
-    // One rigid sphere: 2/9. Two, d between the centres, falling abreast: 1 + 3/(4 d) + 1/(2 d^3) by the method of reflections,
-    // right to (1/d)^4; the spheres hold their shape to the stiffness of the pinned tension.
+    // One rigid sphere: 2/9. Two, d between the centres, falling abreast: 1 + 3/(4 d) + 1/(2 d^3) by the method of
+    // reflections, right to (1/d)^4; the spheres hold their shape to the stiffness of the pinned tension.
     const double expected = 2.0 / 9 * (1 + 0.75 / 3 + 0.5 / 27);
     CHECK(-m.center[2] == Approx(expected * 0.5).epsilon(0.015));
     CHECK(std::abs(m.axes[0] - 1) < 2e-4);

@@ -1,4 +1,5 @@
-// The places where another method could stand in: near pairs, the far field, the store of plans, the inner product of GMRES.
+// The places where another method could stand in: near pairs, the far field, the store of plans, the inner product of
+// GMRES.
 #include "sim/core/attempt.h"
 #include "sim/core/cells.h"
 #include "sim/layers/far_field.h"
@@ -60,7 +61,8 @@ TEST_CASE("the far field leaves out a group's own surface and what is excluded, 
   }
   Matrix free(5, 3);
   free << 0, 5, 0, 1, 6, 2, -4, 0, 1, 20, 3, 3, 7, -5, 1;
-  FarField far = plan_far_field(std::make_shared<const std::vector<Sources>>(sources), {{sources[0].points, 0}, {free, -1}});
+  FarField far =
+      plan_far_field(std::make_shared<const std::vector<Sources>>(sources), {{sources[0].points, 0}, {free, -1}});
   exclude(far, {{1, 2, {1, 3}}, {0, 1, {0}}});
   const std::vector<Matrix> u = far_velocity(far, densities);
   const auto by_one = [&](int surface, const Vec3& at) {
@@ -114,7 +116,7 @@ TEST_CASE("GMRES solves the same system in whatever inner product it is given") 
   std::srand(5);
   const Matrix a = Matrix::Random(n, n) + 8 * Matrix::Identity(n, n);
   const Vector b = Vector::Random(n), weights = Vector::Random(n).cwiseAbs().array() + 0.5;
-  const LinearMap left = [&](const Vector& x) { return Vector(a * x); }, none = [](const Vector& x) { return x; };
+  const LinearMap left = [&](const Vector&x) { return Vector(a * x); }, none = [](const Vector&x) { return x; };
   int products = 0;
   const InnerProduct weighted = [&](const Vector& x, const Vector& y) {
     ++products;

@@ -1,5 +1,5 @@
-#include "sim/stepping/simulate.h"
 #include "../support/temporary_folder.h"
+#include "sim/stepping/simulate.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 
@@ -18,8 +18,8 @@ Scene short_scene(double end = 0.6) {
   return scene;
 }
 
-SimulationOutcome run(const Scene& scene, const std::filesystem::path& file, bool resume = false, std::int64_t steps = -1,
-                      std::function<bool()> stop = {}) {
+SimulationOutcome run(const Scene& scene, const std::filesystem::path& file, bool resume = false,
+                      std::int64_t steps = -1, std::function<bool()> stop = {}) {
   SimulationOptions options;
   options.trajectory = file;
   options.resume = resume;
@@ -146,7 +146,8 @@ TEST_CASE("a failing step is retried with half its length before the run gives u
   scene.numerics.correction = false;
   scene.time.scheme = "globally-implicit";
   scene.time.save_every.reset();
-  scene.numerics.step_area_bound = 3e-4;  // backward Euler at dt = 0.1 inflates by more, at dt = 0.05 by a quarter of it
+  scene.numerics.step_area_bound =
+      3e-4;  // backward Euler at dt = 0.1 inflates by more, at dt = 0.05 by a quarter of it
   run(scene, folder.path() / "r.h5");
   const TrajectoryReader reader(folder.path() / "r.h5");
   double retries = 0;

@@ -90,8 +90,8 @@ TEST_CASE("a drop without forces has the normal velocity 5/(2 lambda + 3) n.E.n"
       const Coefficients u{p, y.reshaped(coefficient_count(p), 3)};
       return Vector((m.material.alpha() * u.values - (1 - lambda) * m.layers.dual.apply(u).values).reshaped());
     };
-    const GmresResult s = gmres(row, [](const Vector& v) { return v; }, r.values.reshaped(),
-                                Vector::Zero(r.values.size()), 1e-14, 50);
+    const GmresResult s = gmres(
+        row, [](const Vector& v) { return v; }, r.values.reshaped(), Vector::Zero(r.values.size()), 1e-14, 50);
     const Matrix u = m.bases.field.synthesize({p, s.solution.reshaped(coefficient_count(p), 3)}).values;
     double worst = 0;
     for (Eigen::Index k = 0; k < u.rows(); ++k) {
@@ -150,7 +150,8 @@ TEST_CASE("a shape with the symmetry x -> -x about the origin keeps it in shear"
   const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 10);
   // x(-s) = -x(s) holds exactly when the even degrees vanish.
   double even = 0;
-  for (int n = 0; n <= 8; n += 2) even = std::max(even, d.vesicles[0].position.values.middleRows(n * n, 2 * n + 1).norm());
+  for (int n = 0; n <= 8; n += 2)
+    even = std::max(even, d.vesicles[0].position.values.middleRows(n * n, 2 * n + 1).norm());
   CHECK(even < 1e-9);
 }
 
@@ -164,7 +165,8 @@ TEST_CASE("a membrane in fluid at rest keeps its area, and the power of its bend
   const auto power = [&](const Matrix& f) { return integrate(m.geometry, f.cwiseProduct(u).rowwise().sum()); };
   const double bending = power(bending_force(m.bases, m.geometry, 1));
   CHECK(bending > 0);
-  CHECK(std::abs(power(tension_force(m.bases, m.geometry, s.motion.tension))) < 5e-4 * bending);  // div u = 0 up to degree p - 1
+  CHECK(std::abs(power(tension_force(m.bases, m.geometry, s.motion.tension))) <
+        5e-4 * bending);               // div u = 0 up to degree p - 1
   const auto energy = [&](double h) {  // E = oint H^2 dA, kappa_b = 1
     return measures(geometry(plans.basis(12, 48), {12, x.values + h * s.motion.velocity.values})).h_squared;
   };
@@ -219,8 +221,7 @@ TEST_CASE("BDF2 stays of second order when the steps vary in length") {
   const Model s = make_model(scene, plans);
   const auto run = [&](int refinement) {  // steps of 0.02, 0.04, 0.02, ... split evenly
     Dynamics d = initial_dynamics(s);
-    for (int k = 0; k < 6; ++k)
-      d = test::advanced(s, d, (k % 2 ? 0.08 : 0.04) / refinement, refinement);
+    for (int k = 0; k < 6; ++k) d = test::advanced(s, d, (k % 2 ? 0.08 : 0.04) / refinement, refinement);
     return Matrix(d.vesicles[0].position.values);
   };
   const Matrix a = run(1), b = run(2), c = run(4);
@@ -279,8 +280,9 @@ TEST_CASE("GMRES takes at most 30 iterations, and hardly more with the order, wh
 }
 
 TEST_CASE("on a sphere the velocity preconditioner inverts the stiffness of the normal, truncated as velocities are") {
-  // alpha u + P_p [n g(k) P_{p+1} (n.u)] for bending and tension, with c so large that the highest waves move 1000 times
-  // slower: the whole edge of the spectrum counts. On a sphere n has degree 1, and all below the edge is exact too.
+  // alpha u + P_p [n g(k) P_{p+1} (n.u)] for bending and tension, with c so large that the highest waves move 1000
+  // times slower: the whole edge of the spectrum counts. On a sphere n has degree 1, and all below the edge is exact
+  // too.
   const int p = 10;
   const double c = 100, sigma = 3;
   Plans plans;
@@ -292,8 +294,8 @@ TEST_CASE("on a sphere the velocity preconditioner inverts the stiffness of the 
       mode_filter(m.waves, [&](double k) { return c * (0.01 * k * k * k / 8 + sigma * k / 4); });
   const Coefficients u{p, Matrix::Random(coefficient_count(p), 3)};
   const Basis& basis = m.waves.basis;
-  Coefficients along = basis.analyze(
-      Matrix(basis.synthesize(resized(u, p + 1)).values.cwiseProduct(m.waves.n).rowwise().sum()));
+  Coefficients along =
+      basis.analyze(Matrix(basis.synthesize(resized(u, p + 1)).values.cwiseProduct(m.waves.n).rowwise().sum()));
   for (int n = 0; n <= p + 1; ++n)
     along.values.middleRows(n * n, 2 * n + 1) = (g[n] * along.values.middleRows(n * n, 2 * n + 1)).eval();
   const Vector force = basis.synthesize(along).values.col(0);
@@ -321,8 +323,8 @@ TEST_CASE("the modes of a sphere have the wave numbers sqrt(n(n+1))/R, those of 
 }
 
 TEST_CASE("a membrane under tension takes long steps at every order, which it does not with an explicit tension") {
-  // lambda = 1, chi dt = 0.42, twice the paper's: the tension of about 3.3 moves ripples of degree 12 by sigma n/4 = 10 per
-  // unit time.
+  // lambda = 1, chi dt = 0.42, twice the paper's: the tension of about 3.3 moves ripples of degree 12 by sigma n/4 = 10
+  // per unit time.
   const int p = 12;
   const auto last_time = [&](bool implicit) {
     Plans plans;

@@ -19,7 +19,8 @@ namespace {
 Coefficients coefficients(int order, int fields, double seed) {
   Coefficients c{order, Matrix(coefficient_count(order), fields)};
   for (Eigen::Index j = 0; j < fields; ++j)
-    for (Eigen::Index i = 0; i < c.values.rows(); ++i) c.values(i, j) = std::sin(seed + 0.37 * double(i) + 1.9 * double(j));
+    for (Eigen::Index i = 0; i < c.values.rows(); ++i)
+      c.values(i, j) = std::sin(seed + 0.37 * double(i) + 1.9 * double(j));
   return c;
 }
 
@@ -29,9 +30,16 @@ State state(int k) {
   for (int v = 0; v < 2; ++v) {
     const int order = v == 0 ? 4 : 6;
     const double seed = k + 0.1 * v;
-    VesicleState w{coefficients(order, 3, seed), coefficients(order, 3, seed + 1), coefficients(order, 1, seed + 2),
-                   coefficients(12, 3, seed + 3), Matrix::Random(14, 3), coefficients(order, 3, seed + 4),
-                   coefficients(order, 3, seed + 5), k, v, seed};
+    VesicleState w{coefficients(order, 3, seed),
+                   coefficients(order, 3, seed + 1),
+                   coefficients(order, 1, seed + 2),
+                   coefficients(12, 3, seed + 3),
+                   Matrix::Random(14, 3),
+                   coefficients(order, 3, seed + 4),
+                   coefficients(order, 3, seed + 5),
+                   k,
+                   v,
+                   seed};
     for (int i = 0; i < 14; ++i)
       for (int j = 0; j < 3; ++j) w.tracers(i, j) = std::cos(seed + i + 0.3 * j);
     s.vesicles.push_back(w);
@@ -142,7 +150,8 @@ TEST_CASE("a second writer of the same trajectory is refused", "[trajectory]") {
   std::filesystem::create_symlink("t.h5", folder / "link.h5");
   std::filesystem::create_hard_link(folder / "t.h5", folder / "twin.h5");
   for (const char* name : {"t.h5", "link.h5", "twin.h5"}) {
-    CHECK_THAT(message_of([&] { TrajectoryWriter::resume(folder / name); }), Catch::Contains("another process is writing"));
+    CHECK_THAT(message_of([&] { TrajectoryWriter::resume(folder / name); }),
+               Catch::Contains("another process is writing"));
     CHECK_THAT(message_of([&] { written(folder / name, 1, 2); }), Catch::Contains("another process is writing"));
   }
   CHECK(std::filesystem::is_symlink(folder / "link.h5"));
@@ -161,7 +170,8 @@ TEST_CASE("a trajectory is written through a link and takes the place of no fore
   support::write_file(folder / "u.h5.lock", "mine");
   support::write_file(folder / "u.h5.tmp", "mine");
   support::write_file(folder / "u.h5", "");  // as mktemp leaves it
-  CHECK_THAT(message_of([&] { written(folder / "thesis.pdf", 1, 2); }), Catch::Contains("is not a trajectory of this program"));
+  CHECK_THAT(message_of([&] { written(folder / "thesis.pdf", 1, 2); }),
+             Catch::Contains("is not a trajectory of this program"));
   CHECK_THAT(message_of([&] { written("/dev/null", 1, 2); }), Catch::Contains("is not a file"));
   written(folder / "u.h5", 1, 2);
   CHECK(support::read_file(folder / "thesis.pdf") == "precious");
@@ -176,7 +186,8 @@ TEST_CASE("what cannot be made ready leaves the trajectory that was there, and n
   written(path, 2, 3);
   const std::string before = support::read_file(path);
   const auto refuse = [] { throw std::runtime_error("not today"); };
-  CHECK(message_of([&] { TrajectoryWriter::create(path, layout(3), header, state(0), payload(0), refuse); }) == "not today");
+  CHECK(message_of([&] { TrajectoryWriter::create(path, layout(3), header, state(0), payload(0), refuse); }) ==
+        "not today");
   CHECK(support::read_file(path) == before);
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator()) == 1);
 }

@@ -35,7 +35,8 @@ State solved_alone(Plans& plans, const Scene& scene) {
   State state = solved(plans, scene);
   VesicleState& v = state.vesicles[0];
   const Membrane m = freeze_membrane(plans, model.materials[0], v.position, 2, 0);
-  const Solve s = solve_system(m, 0, test::forcing(m, scene.flows, Vec3::Zero()), test::at_rest(v.position.order), 1e-12);
+  const Solve s =
+      solve_system(m, 0, test::forcing(m, scene.flows, Vec3::Zero()), test::at_rest(v.position.order), 1e-12);
   v.velocity = s.motion.velocity;
   v.tension = s.motion.tension;
   return state;
@@ -132,7 +133,8 @@ TEST_CASE("a vesicle in a rigid rotation turns with it, and so does the fluid in
       const FlowSamples u = velocity_at(field, x);
       const Matrix exact = test::cross_rows({0, 0.8, 0}, x);
       INFO("λ = " << lambda << " at a distance of " << distance);
-      CHECK((u.velocity - exact).rowwise().norm().maxCoeff() < 1e-3);  // λ - 1 = 9 times the near rule's 1e-4 on a bent shape
+      CHECK((u.velocity - exact).rowwise().norm().maxCoeff() <
+            1e-3);  // λ - 1 = 9 times the near rule's 1e-4 on a bent shape
     }
   }
 }
@@ -151,16 +153,19 @@ TEST_CASE("a drop without tension deforms in a straining flow by 5/(2λ + 3)") {
   v.tension.values.setZero();
   const Basis& basis = plans.basis(8, 9);
   const Membrane m = freeze_membrane(plans, model.materials[0], v.position, 2, 0);
-  const Coefficients background = basis.analyze(background_velocity(scene.flows, 0, basis.synthesize(v.position).values));
+  const Coefficients background =
+      basis.analyze(background_velocity(scene.flows, 0, basis.synthesize(v.position).values));
   for (int k = 0; k < 200; ++k)  // (1+λ)/2 u = u_inf + (1-λ) D u: contracts with 3/5 · 1.5/2.5
-    v.velocity.values = (background.values + (1 - lambda) * m.layers.dual.apply(v.velocity).values) / ((1 + lambda) / 2);
+    v.velocity.values =
+        (background.values + (1 - lambda) * m.layers.dual.apply(v.velocity).values) / ((1 + lambda) / 2);
   const FlowField field = flow_field(plans, scene, state, stretching);
   Matrix x(4, 3);
   x << 1.0005, 0, 0, 0, 0, -1.0005, 0.9996, 0, 0, 0, 0, 0.9996;
   const FlowSamples u = velocity_at(field, x);
   for (Eigen::Index i = 0; i < 4; ++i) {
     const Vec3 n = Vec3(x.row(i).transpose()).normalized();
-    CHECK(u.velocity.row(i).dot(n) == Approx(5 / (2 * lambda + 3) * n.dot(e * n)).epsilon(2e-3));  // 5e-4 off the surface
+    CHECK(u.velocity.row(i).dot(n) ==
+          Approx(5 / (2 * lambda + 3) * n.dot(e * n)).epsilon(2e-3));  // 5e-4 off the surface
   }
 }
 

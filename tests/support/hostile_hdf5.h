@@ -1,5 +1,6 @@
-// What somebody may do to a trajectory so that it stays an HDF5 file: attributes of other types and extents, datasets of other
-// types, extents and storage, links that lead elsewhere. Each edit is made by HDF5 itself, so that all its checksums fit.
+// What somebody may do to a trajectory so that it stays an HDF5 file: attributes of other types and extents, datasets
+// of other types, extents and storage, links that lead elsewhere. Each edit is made by HDF5 itself, so that all its
+// checksums fit.
 #pragma once
 
 #include <hdf5.h>
@@ -44,17 +45,28 @@ inline hid_t text_of_bytes(std::size_t bytes) {
 inline hid_t some_type(Random& random) {
   const hsize_t extent[] = {std::uniform_int_distribution<hsize_t>(1, 40)(random)};
   switch (std::uniform_int_distribution(0, 11)(random)) {
-    case 0: return H5Tcopy(H5T_STD_I64LE);
-    case 1: return H5Tcopy(H5T_STD_U64BE);
-    case 2: return H5Tcopy(H5T_IEEE_F64LE);
-    case 3: return H5Tcopy(H5T_IEEE_F32BE);
-    case 4: return H5Tcopy(H5T_STD_I8LE);
-    case 5: return text_of_bytes(H5T_VARIABLE);
-    case 6: return text_of_bytes(std::uniform_int_distribution<std::size_t>(1, 5000)(random));
-    case 7: return H5Tarray_create2(H5T_STD_I64LE, 1, extent);
-    case 8: return H5Tvlen_create(H5T_STD_I64LE);
-    case 9: return H5Tcreate(H5T_OPAQUE, extent[0]);
-    case 10: return H5Tcopy(H5T_STD_REF_OBJ);
+    case 0:
+      return H5Tcopy(H5T_STD_I64LE);
+    case 1:
+      return H5Tcopy(H5T_STD_U64BE);
+    case 2:
+      return H5Tcopy(H5T_IEEE_F64LE);
+    case 3:
+      return H5Tcopy(H5T_IEEE_F32BE);
+    case 4:
+      return H5Tcopy(H5T_STD_I8LE);
+    case 5:
+      return text_of_bytes(H5T_VARIABLE);
+    case 6:
+      return text_of_bytes(std::uniform_int_distribution<std::size_t>(1, 5000)(random));
+    case 7:
+      return H5Tarray_create2(H5T_STD_I64LE, 1, extent);
+    case 8:
+      return H5Tvlen_create(H5T_STD_I64LE);
+    case 9:
+      return H5Tcreate(H5T_OPAQUE, extent[0]);
+    case 10:
+      return H5Tcopy(H5T_STD_REF_OBJ);
     default: {
       const hid_t type = H5Tcreate(H5T_COMPOUND, 16);
       H5Tinsert(type, "a", 0, H5T_STD_I64LE);
@@ -115,17 +127,20 @@ inline void replace_link(hid_t file, const std::string& name, int kind, const st
 
 inline std::vector<std::string> names_of_attributes(hid_t file) {
   std::vector<std::string> names;
-  H5Aiterate2(file, H5_INDEX_NAME, H5_ITER_INC, nullptr,
-              [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
-                static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-                return 0;
-              }, &names);
+  H5Aiterate2(
+      file, H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
+        static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+        return 0;
+      },
+      &names);
   return names;
 }
 
 inline std::vector<std::string> names_of_datasets() {
-  return {"count", "steps/count", "notes_count", "resume_head", "checksum", "steps/checksum", "scene", "notes", "resume",
-          "step", "time", "order", "label_order", "tracers", "tension", "labels", "position", "steps", "steps/time"};
+  return {"count",   "steps/count", "notes_count", "resume_head", "checksum",  "steps/checksum", "scene",
+          "notes",   "resume",      "step",        "time",        "order",     "label_order",    "tracers",
+          "tension", "labels",      "position",    "steps",       "steps/time"};
 }
 
 /// One edit at random; `elsewhere` is what links and external storage lead to.
@@ -145,14 +160,16 @@ inline void hostile_edit(hid_t file, const std::string& elsewhere, Random& rando
       // Of the type and extent that there were, or others.
       const hid_t old = H5Dopen2(file, dataset.c_str(), H5P_DEFAULT);
       const bool alike = old >= 0 && random() % 2 == 0;
-      const hid_t same_type = alike ? H5Dget_type(old) : H5Tcopy(type), same_space = alike ? H5Dget_space(old) : H5Scopy(space);
+      const hid_t same_type = alike ? H5Dget_type(old) : H5Tcopy(type),
+                  same_space = alike ? H5Dget_space(old) : H5Scopy(space);
       if (old >= 0) H5Dclose(old);
       replace_dataset(file, dataset, same_type, same_space, static_cast<Storage>(random() % 5), elsewhere);
       H5Tclose(same_type);
       H5Sclose(same_space);
       break;
     }
-    default: replace_link(file, dataset, static_cast<int>(random() % 4), elsewhere);
+    default:
+      replace_link(file, dataset, static_cast<int>(random() % 4), elsewhere);
   }
   H5Tclose(type);
   H5Sclose(space);
