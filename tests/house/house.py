@@ -2,6 +2,7 @@
 """Tests of the house itself: layering, generated pages, commands in the README. One sentence per finding, status 1."""
 
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -177,8 +178,27 @@ def validation():
     return validation_findings(page.read_text(), lambda picture: png_texts(page.parent / picture))
 
 
+def layout():
+    """C++ files are as clang-format leaves them. Its versions differ in details: one is the measure."""
+    version = "14"
+    names = [name for name in (f"clang-format-{version}", "clang-format") if shutil.which(name)]
+    said = subprocess.run([names[0], "--version"], capture_output=True, text=True).stdout if names else ""
+    if f"version {version}." not in said:
+        print(f"clang-format {version} is not here: the layout of lines is not checked")
+        sys.exit(77)
+    files = [path for module in [*MODULES, "tests"] for path in sorted((ROOT / module).rglob("*")) if path.suffix in (".h", ".cpp")]
+    findings = []
+    for first in range(0, len(files), 50):
+        done = subprocess.run([names[0], "--dry-run", "--ferror-limit=1", *map(str, files[first:first + 50])],
+                              capture_output=True, text=True)
+        findings += [f"{Path(line.split(':')[0]).relative_to(ROOT)}:{line.split(':')[1]} is not laid out by .clang-format: "
+                     "clang-format -i lays it out" for line in done.stderr.splitlines() if "-Wclang-format-violations" in line]
+    return findings
+
+
 def main():
-    checks = {"validation": validation, "layering": layering, "reference": reference, "pages": pages, "itself": itself}
+    checks = {"validation": validation, "layering": layering, "layout": layout, "reference": reference, "pages": pages,
+              "itself": itself}
     findings = checks[sys.argv[1]](*sys.argv[2:])
     for finding in findings:
         print(finding)
