@@ -101,7 +101,10 @@ const std::vector<LiteraturePoint>& literature_frequencies() {
 
 SteadyPoint steady_point(sim::Plans& plans, const sim::VesicleState& v, double viscosity_contrast, double rate) {
   const sim::VesicleMeasures m = sim::measure(plans, v, 1, 1);
-  SteadyPoint point{m.reduced_volume, viscosity_contrast, m.inclination_deg / 180, 0};
+  SteadyPoint point{.reduced_volume = m.reduced_volume,
+                    .viscosity_contrast = viscosity_contrast,
+                    .angle = m.inclination_deg / 180,
+                    .frequency = 0};
   render::CutPlane plane;
   plane.origin = m.center;
   const std::vector<render::ClosedCurve> curves = render::cut(v.position, plane, 96);
@@ -131,8 +134,11 @@ SteadyPoint keller_skalak(double nu, double lambda) {
   }
   const double f2 = g * (a1 * a1 + a2 * a2) / 2, f0 = 2 / (r + 1 / r), f1 = (r - 1 / r) / 2, q = 1 + f2 * (lambda - 1);
   const double b = f0 * (f1 + 1 / (f1 * q));
-  if (!(b > 1)) return {nu, lambda, std::nan(""), 0};
-  return {nu, lambda, std::acos(1 / b) / 2 / pi, 1 / b / (2 * f1 * q)};
+  const bool treads = b > 1;
+  return {.reduced_volume = nu,
+          .viscosity_contrast = lambda,
+          .angle = treads ? std::acos(1 / b) / 2 / pi : std::nan(""),
+          .frequency = treads ? 1 / b / (2 * f1 * q) : 0};
 }
 
 namespace {

@@ -84,26 +84,31 @@ Report reproduce_aliasing(const Effort&) {
   for (std::size_t k = 0; k < fine.size(); ++k)
     figure.csv +=
         fmt::format("{:.10g},{:.10g},{:.10g},{:.10g}\n", fine[k], low[k], aliases[0].values[k], aliases[1].values[k]);
-  figure.drawing = {
-      510, 236, [=](cairo_t* cairo, const render::Font& font) {
-        const render::Theme theme = render::find_theme("paper");
-        const render::Pen pen{cairo, font, theme};
-        for (std::size_t k = 0; k < aliases.size(); ++k) {
-          const render::Panel panel{{-1, 1}, {-2.6, 2.6}, 50 + 240 * static_cast<double>(k), 30, 204, 160};
-          constexpr render::Colour grey{0.62, 0.66, 0.72};
-          render::draw_polyline(pen, panel, fine, aliases[k].values, {grey, 0.6});
-          render::draw_polyline(pen, panel, fine, low, {render::curve_colour(0), 1.15});
-          render::draw_markers(pen, panel, at, low_at, render::Marker::dot, render::curve_colour(1), 2);
-          render::Axes axes;
-          axes.x.label = "z";
-          axes.y.numbers = k == 0;
-          render::draw_axes(pen, panel, axes);
-          render::draw_title(pen, panel, k == 0 ? "(a)" : "(b)");
-          render::draw_legend_line(pen, panel.left + panel.width, 23,
-                                   {{"P_{4}^{1}", render::curve_colour(0), {}, false},
-                                    {fmt::format("P_{{{}}}^{{{}}}", aliases[k].n, aliases[k].m), grey, {}, false}});
-        }
-      }};
+  figure.drawing = {.width = 510, .height = 236, .paint = [=](cairo_t* cairo, const render::Font& font) {
+                      const render::Theme theme = render::find_theme("paper");
+                      const render::Pen pen{cairo, font, theme};
+                      for (std::size_t k = 0; k < aliases.size(); ++k) {
+                        const render::Panel panel{.x = {-1, 1},
+                                                  .y = {-2.6, 2.6},
+                                                  .left = 50 + 240 * static_cast<double>(k),
+                                                  .top = 30,
+                                                  .width = 204,
+                                                  .height = 160};
+                        constexpr render::Colour grey{0.62, 0.66, 0.72};
+                        render::draw_polyline(pen, panel, fine, aliases[k].values, {grey, 0.6});
+                        render::draw_polyline(pen, panel, fine, low, {render::curve_colour(0), 1.15});
+                        render::draw_markers(pen, panel, at, low_at, render::Marker::dot, render::curve_colour(1), 2);
+                        render::Axes axes;
+                        axes.x.label = "z";
+                        axes.y.numbers = k == 0;
+                        render::draw_axes(pen, panel, axes);
+                        render::draw_title(pen, panel, k == 0 ? "(a)" : "(b)");
+                        render::draw_legend_line(
+                            pen, panel.left + panel.width, 23,
+                            {{"P_{4}^{1}", render::curve_colour(0), {}, false},
+                             {fmt::format("P_{{{}}}^{{{}}}", aliases[k].n, aliases[k].m), grey, {}, false}});
+                      }
+                    }};
   report.figure = std::move(figure);
   report.picture_text = "P_4^1 (blue) and a high function (grey) that takes its values at the seven nodes (dots).";
   return report;

@@ -173,7 +173,11 @@ Figure draw_snapshots(const FigureInput& input) {
                                 input.time_factor * input.states[k].time, v, c.x, c.y, c.z);
     }
   const auto stills = std::make_shared<const std::vector<Image>>(input.stills);
-  figure.drawing = {sheet.width, sheet.height, nullptr, page.theme.ground, dots_per_inch(input.parameters)};
+  figure.drawing = {.width = sheet.width,
+                    .height = sheet.height,
+                    .paint = nullptr,
+                    .ground = page.theme.ground,
+                    .dots_per_inch = dots_per_inch(input.parameters)};
   figure.drawing.paint = [sheet, stills, input_length = input.length, symbol = input.length_symbol, theme = page.theme](
                              cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
