@@ -359,7 +359,9 @@ void OwnedFiles::settle() {
     const List before = read(file);
     std::string text(heading);
     list_.clear();
-    for (const auto& [name, marks] : before) {
+    for (const auto& entry : before) {
+      const std::string& name = entry.first;
+      const std::vector<Mark>& marks = entry.second;
       if (::lstat((folder_ / name).c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
       std::vector<Mark> fitting;
       for (const Mark& mark : marks)

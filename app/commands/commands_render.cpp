@@ -40,6 +40,7 @@ Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path,
 }  // namespace
 
 int render(const Options& options) {
+  limit_drawing_threads(options.jobs);
   std::vector<sim::TrajectoryReader> trajectories;
   std::vector<Settings> settings;
   for (const fs::path& path : options.inputs) {

@@ -102,6 +102,7 @@ int run(const Options& options) {
 
   // A simulation that stopped early is drawn as far as it went: that is where one looks for the reason.
   const sim::TrajectoryReader reader(trajectory);
+  limit_drawing_threads(options.jobs);
   const FrameReport frames = render_frames({{reader, settings}}, files, options);
   if (frames.interrupted) {
     tell(fmt::format("interrupted; {} frames are in '{}'; the same command continues", frames.drawn + frames.kept,

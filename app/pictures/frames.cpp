@@ -252,6 +252,10 @@ void draw(const Job& job, Film& film, Progress& progress, FrameReport& report) {
 
 }  // namespace
 
+void limit_drawing_threads(int threads) {
+  if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 0);
+}
+
 FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
   const Job job = prepare(sources, files, options);
   FrameReport report;
@@ -269,8 +273,6 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles&
     return report;
   }
 
-  // Software OpenGL has threads of its own; the pictures do not depend on their number.
-  if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
   Film film{{}, report};
   if (encode) start(film, job);
   Progress progress("rendering", options.quiet);
@@ -288,7 +290,6 @@ void render_still(const std::vector<PictureSource>& sources, double time, const 
   const double end = end_of(longest(sources));
   require_time(time, end);
   const Production production = prepare_pictures(sources, time);
-  if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 0);
   Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
   const render::Image image = draw_picture(studio, production, time);
   files.write(path, render::png_bytes(image, picture_text(sources.front(), studio, time, hash_of(production, time))));

@@ -28,4 +28,8 @@ FrameReport render_frames(const std::vector<PictureSource>&, OwnedFiles& folder,
 void render_still(const std::vector<PictureSource>&, double time, const std::filesystem::path&, ResultFiles&,
                   const Options&);
 
+/// Software OpenGL has threads of its own; the pictures do not depend on their number. For the whole process, and only
+/// before anything is drawn: what the environment says already stays. 0: as many as it likes.
+void limit_drawing_threads(int threads);
+
 }  // namespace app
