@@ -40,7 +40,6 @@ Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path,
 }  // namespace
 
 int render(const Options& options) {
-  limit_drawing_threads(options.jobs);
   std::vector<sim::TrajectoryReader> trajectories;
   std::vector<Settings> settings;
   for (const fs::path& path : options.inputs) {
@@ -57,6 +56,7 @@ int render(const Options& options) {
     if (fs::is_directory(still)) still /= "still.png";
     ResultFiles files(options.inputs, options.force);
     files.require(still);
+    limit_drawing_threads(options.jobs);
     render_still(sources, *options.time, still, files, options);
     files.settle();
     if (!options.quiet) fmt::print("{}\n", printable(still.string()));
@@ -95,6 +95,7 @@ int render(const Options& options) {
   }
   const FolderLock lock(folder, options.shard, options.shards);
   OwnedFiles files(folder);
+  limit_drawing_threads(options.jobs);
   const FrameReport report = render_frames(sources, files, options);
   if (report.interrupted) return stopped();
   if (!options.quiet) {
