@@ -656,11 +656,11 @@ def forged_record(desk):
         heads, whole = file["resume_head"][:], file["resume"][:]
     for s in range(2):
         assert checksum(int(heads[s, 0]), whole[s, :int(heads[s, 1])].tobytes()) == int(heads[s, 2]), "the format has changed"
-    order = 8  # after step, saves, time, two steps, history, vesicles: order, rows, columns of the position, then its numbers
+    order = 7  # after version, step, saves, time, step limit, calm, vesicles: order, rows, columns of the position, its numbers
     rows, columns = int(whole[0, order + 1]), int(whole[0, order + 2])
-    displacement = order + 3 + rows * columns
-    assert whole[0, order] == whole[0, displacement] == 4, "the format has changed"
-    for place in (order, order + 1, order + 2, displacement, displacement + 1):
+    past = order + 3 + rows * columns + 1  # behind the number of past levels
+    assert whole[0, order] == whole[0, past] == 4, "the format has changed"
+    for place in (order, order + 1, order + 2, past - 1, past, past + 1):
         for value in (1e6, 1e18, -1.0, float("nan")):
             shutil.copy(desk / "t.h5", desk / "x.h5")
             with module.File(desk / "x.h5", "r+") as file:

@@ -48,7 +48,8 @@ TEST_CASE("every field of the catalogue has its closed form on a sphere that tur
   const Vec3 other(0, 0, radius + gap + 1);
   State state;
   state.vesicles = {sphere(radius, Vec3::Zero()), sphere(1, other)};
-  const Vec3 direction = Vec3(0.6, 0.3, 0.5).normalized(), at = radius * direction;
+  const Vec3 direction = Vec3(0.6, 0.3, 0.5).normalized();  // a parameter
+  const Vec3 at = sample_points(state.vesicles[0].position, direction.transpose()).row(0).transpose();
   const std::map<std::string_view, double> exact{{"tension", sigma},
                                                  {"mean-curvature", 1 / radius},
                                                  {"gaussian-curvature", 1 / (radius * radius)},
@@ -144,7 +145,7 @@ TEST_CASE("every shape of the catalogue is the surface that its meaning says") {
     v.order = order;
     v.axis = Vec3::UnitZ();
     for (const std::string_view key : row.keys) {
-      if (key == "reduced_volume") v.reduced_volume = 0.85;
+      if (key == "reduced_volume") v.reduced_volume = row.name == "biconcave" ? 0.65 : 0.85;
       if (key == "axes") v.axes = Vec3(2, 1, 0.5);
       if (key == "coefficients") v.coefficients = {{2, 0, 0.2}};
       if (key == "file") v.file = (folder.path() / "shape.txt").string();
@@ -170,7 +171,7 @@ TEST_CASE("every shape of the catalogue is the surface that its meaning says") {
     } else {
       const Measures m = measures(geometry(Basis(order, 40), x));
       CHECK(m.area == Approx(4 * pi).epsilon(1e-6));
-      CHECK(reduced_volume(m.area, m.volume) == Approx(0.85).epsilon(1e-6));
+      CHECK(reduced_volume(m.area, m.volume) == Approx(0.65).epsilon(1e-6));
       // A disc that is thinner in the middle than further out.
       const auto height = [&](double theta) { return sample_points(x, unit_vector(theta, 0).transpose())(0, 2); };
       CHECK(height(0.01) < height(0.8));
