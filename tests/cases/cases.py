@@ -790,14 +790,18 @@ def killed_at_the_end(desk):
     check(count > 20, f"only {count} changes of files were seen")
     # The beginning, where the scene is written; the end of the simulation, some way through; the end of everything.
     places = sorted({3, 5, 7, count // 4, count // 2, 2 * count // 3, 3 * count // 4, count - 1})
+    kills = 0
     for place in places:
         killed = desk.run("run", "s.toml", "-o", "k", "-q", environment={"LD_PRELOAD": library, "KILL_AT": str(place)})
-        check(killed.status == -signal.SIGKILL, f"it was not killed at {place} of {count}: status {killed.status}")
+        # Resume records are renewed by the clock: a faster run has fewer changes, and may come to its end before the last places.
+        check(killed.status in (-signal.SIGKILL, 0), f"killed at {place} of {count}: status {killed.status}")
+        kills += killed.status != 0
         desk.good("run", "s.toml", "-o", "k", "-q")
         after = desk.tree("k")
         check(sorted(after) == sorted(whole), f"killed at {place} of {count}: other files: {sorted(set(after) ^ set(whole))}")
         check(after == whole, f"killed at {place} of {count}: other bytes: {[n for n in whole if whole[n] != after[n]]}")
         shutil.rmtree(desk / "k")
+    check(kills > 4, f"only {kills} of {len(places)} runs were killed")
 
 
 # Time dependence.
