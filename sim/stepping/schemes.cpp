@@ -128,13 +128,14 @@ Attempt<Advance> extrapolated_euler(const StepProblem& problem) {
   }
   Attempt<Advance> last = euler(middle, d.time + dt / 2, dt / 2, guess);
   if (!last) return last;
+  const int levels = scheme_of(problem.model.scene).past_levels;  // of the scheme that this one starts
   for (std::size_t k = 0; k < x.size(); ++k) {
     const VesicleDynamics& v = d.vesicles[k];
     Moved& m = last->vesicles[k];
     m.error = size_of(v, m.position.values - whole->vesicles[k].position.values);
     m.position.values = 2 * m.position.values - whole->vesicles[k].position.values;
     // The flow's frame, with which a run starts, is of another kind: that of the new time stands for both.
-    m.history = pushed({}, {v.position, m.frame, steady.mean[k], dt}, 1);
+    m.history = pushed({}, {v.position, m.frame, steady.mean[k], dt}, levels);
   }
   last->iterations += whole->iterations + half->iterations;
   last->residual = std::max({whole->residual, half->residual, last->residual});
@@ -163,6 +164,7 @@ Attempt<Advance> bdf2(const StepProblem& problem) {
   const std::vector<Motion> guess = carried_motions(d, moving, dt);
   Attempt<Advance> a = implicit_step(problem, frozen, guess, &moving);
   if (!a) return a;
+  const int levels = scheme_of(problem.model.scene).past_levels;  // another scheme may start with this one
   // What BDF2 leaves of dt^3 times the third derivative of x. The trapezoidal rule leaves 1/12, so that the two differ
   // by the rest.
   const double share = (1 + r) * (1 + r) / (6 * r * (1 + 2 * r)), rest = share - 1.0 / 12;
@@ -174,7 +176,7 @@ Attempt<Advance> bdf2(const StepProblem& problem) {
     const Matrix start = guess[k].velocity.values - frame_velocity(rigid_body(now[k]), moving.last[k]).values;
     const Matrix end = m.motion.velocity.values - frame_velocity(rigid_body(frozen.at[k]), moving.last[k]).values;
     m.error = share / rest * size_of(v, now[k].values + dt / 2 * (start + end) - m.position.values);
-    m.history = pushed(v.history, {v.position, v.frame, moving.mean[k], dt}, 1);
+    m.history = pushed(v.history, {v.position, v.frame, moving.mean[k], dt}, levels);
   }
   return a;
 }

@@ -1,6 +1,7 @@
 // Every row of every catalogue of the simulation against what its name and its meaning promise, from closed forms. A
 // row without an entry here fails.
 #include "../support/temporary_folder.h"
+#include "sim/measures/diagnostics.h"
 #include "sim/measures/fields.h"
 #include "sim/membrane/flows.h"
 #include "sim/surface/geometry.h"
@@ -67,6 +68,61 @@ TEST_CASE("every field of the catalogue has its closed form on a sphere that tur
     const double margin = row.name == "membrane-speed" || row.name == "neighbour-distance" ? 0.02 : 1e-8;
     CHECK(sample_points(field, direction.transpose())(0, 0) == Approx(exact.at(row.name)).margin(margin));
   }
+}
+
+TEST_CASE("every measure of a state has its closed form, on a leaning prolate or on a sphere that moves") {
+  const int order = 12;
+  Plans plans;
+  // A prolate of reduced volume 0.85 and area 4 pi: semi-axes and energy of the closed forms of spheroids.
+  VesicleParameters p = test::vesicle("prolate", 0.85, order);
+  p.axis = Vec3(std::cos(0.3), 0, std::sin(0.3));
+  p.center = {3, -2, 5};
+  VesicleState prolate;
+  prolate.position = initial_position(p);
+  prolate.velocity = test::constant_field(order, Vec3::Zero());
+  prolate.tension = {order, Matrix::Zero(coefficient_count(order), 1)};
+  const double volume = 0.85 * 4 * pi / 3;
+  const VesicleMeasures shape = measure(plans, prolate, 4 * pi / 1.1, volume / 0.9);
+  // A sphere of radius 2 with a uniform velocity and a tension that is linear in z.
+  const Vec3 velocity(1, -2, 2);
+  VesicleState sphere;
+  sphere.position = test::ellipsoid(Vec3::Constant(2), order);
+  sphere.velocity = test::constant_field(order, velocity);
+  sphere.tension = {order, Matrix(0.7 * test::constant_field(order, Vec3::Ones()).values.col(0) +
+                                  0.05 * sphere.position.values.col(2))};
+  const VesicleMeasures moving = measure(plans, sphere, 16 * pi, 32 * pi / 3);
+  struct Exact {
+    const VesicleMeasures& of;
+    double value, margin = 1e-7;
+  };
+  const std::map<std::string_view, Exact> exact{{"area", {shape, 4 * pi}},
+                                                {"volume", {shape, volume}},
+                                                {"area_error", {shape, 0.1}},
+                                                {"volume_error", {shape, -0.1}},
+                                                {"reduced_volume", {shape, 0.85}},
+                                                {"center_x", {shape, 3}},
+                                                {"center_y", {shape, -2}},
+                                                {"center_z", {shape, 5}},
+                                                {"inclination_deg", {shape, 0.3 * 180 / pi}},
+                                                {"axis_1", {shape, 1.676919960}},
+                                                {"axis_2", {shape, 0.711956232}},
+                                                {"axis_3", {shape, 0.711956232}},
+                                                {"energy", {shape, 1.34979897}},
+                                                {"velocity_l2", {moving, 3 * std::sqrt(16 * pi)}},
+                                                {"normal_velocity_l2", {moving, 3 * std::sqrt(16 * pi / 3)}},
+                                                {"tension_mean", {moving, 0.7}},
+                                                {"tension_min", {moving, 0.6, 1e-3}},  // extremes on a grid
+                                                {"tension_max", {moving, 0.8, 1e-3}}};
+  std::size_t count = 0;
+  visit(shape, [&](std::string_view name, std::string_view, double) {
+    INFO(name);
+    ++count;
+    REQUIRE(exact.contains(name));
+    visit(exact.at(name).of, [&](std::string_view other, std::string_view, double value) {
+      if (other == name) CHECK(value == Approx(exact.at(name).value).margin(exact.at(name).margin));
+    });
+  });
+  CHECK(count == exact.size());
 }
 
 TEST_CASE("every field of the catalogue has the dimension by which it is divided") {

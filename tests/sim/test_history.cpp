@@ -4,6 +4,8 @@
 #include "surfaces.h"
 #include "tests/support/catch.h"
 
+#include <map>
+
 using namespace sim;
 
 namespace {
@@ -70,6 +72,9 @@ TEST_CASE("every field of a vesicle is carried by a relabelling, and nothing els
   const Scene scene = pair_scene("bdf2");
   const Model s = make_model(scene, plans);
   Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 2);
+  // More levels than any scheme has today.
+  d.vesicles[0].history.levels.push_back({test::smooth_field(8, 8, 3, 5), {}, {}, 0.1});
+  d.vesicles[0].history.levels.push_back({test::smooth_field(8, 8, 3, 6), {}, {}, 0.1});
   const VesicleDynamics before = d.vesicles[0];
   const Relabelling r = parameter_turn(8, Eigen::AngleAxisd(1.1, Vec3::UnitY()).toRotationMatrix());
   carry(plans, r, d.vesicles[0]);
@@ -84,14 +89,16 @@ TEST_CASE("every field of a vesicle is carried by a relabelling, and nothing els
   visit(before, collect(was));
   visit(d.vesicles[0], collect(is));
   REQUIRE(was.size() == is.size());
-  REQUIRE(was.size() ==
-          7);  // position, one past position, velocity, tension, labels, position and velocity of the saved state
+  // Position, three past positions, velocity, tension, labels, position and velocity of the saved state.
+  REQUIRE(was.size() == 9);
   const Matrix parameters = tracer_directions();
   const Matrix at = mapped(r, parameters);
   for (std::size_t k = 0; k < was.size(); ++k) {
     INFO("field " << k);
     CHECK((sample_points(is[k], parameters) - sample_points(was[k], at)).norm() < 1e-11 * (1 + was[k].values.norm()));
   }
+  const Matrix dots_were = sample_points(before.position, before.tracers);
+  CHECK((sample_points(d.vesicles[0].position, d.vesicles[0].tracers) - dots_were).norm() < 1e-9);
   CHECK(d.vesicles[0].frame.motion.rotation == before.frame.motion.rotation);
   CHECK(d.vesicles[0].energy == before.energy);
 }
@@ -125,15 +132,55 @@ TEST_CASE("a history holds the latest levels, and no more than a scheme asks for
   CHECK(pushed(h, h.levels[0], 0).levels.empty());
 }
 
-TEST_CASE("a scheme leaves a history of as many levels as it says") {
+TEST_CASE(
+    "a scheme leaves the positions of the last steps, as many as it says and no older ones, from the first step on") {
   for (const auto& row : scheme_catalogue()) {
     INFO(row.name);
     Plans plans;
-    const Scene scene = pair_scene(std::string(row.name));
+    Scene scene = pair_scene(std::string(row.name));
+    scene.numerics.correction = false;
     const Model s = make_model(scene, plans);
-    const Dynamics d = test::advanced(s, initial_dynamics(s), 0.05, row.function.past_levels + 2);
-    for (const VesicleDynamics& v : d.vesicles) CHECK(int(v.history.levels.size()) == row.function.past_levels);
+    Dynamics d = initial_dynamics(s);
+    std::vector<Dynamics> before;  // the latest last
+    std::vector<double> lengths;
+    for (int k = 1; k <= row.function.past_levels + 3; ++k) {
+      before.push_back(d);
+      lengths.push_back(k % 2 ? 0.05 : 0.04);
+      d = take_step(s, d, lengths.back()).value().dynamics;
+      const auto count = std::size_t(std::min(k, row.function.past_levels));
+      for (std::size_t v = 0; v < d.vesicles.size(); ++v) {
+        const auto& levels = d.vesicles[v].history.levels;
+        REQUIRE(levels.size() == count);
+        for (std::size_t l = 0; l < count; ++l) {
+          CHECK(levels[l].position.values == before[before.size() - 1 - l].vesicles[v].position.values);
+          CHECK(levels[l].dt == lengths[lengths.size() - 1 - l]);
+        }
+      }
+    }
     CHECK(serialised(d).size() == resume_numbers(d, row.function.past_levels));
+  }
+}
+
+TEST_CASE("the correction of a step moves the past along where the scheme says so, and leaves it where it does not") {
+  for (const auto& row : scheme_catalogue()) {
+    INFO(row.name);
+    Plans plans;
+    Scene scene = pair_scene(std::string(row.name)), uncorrected = scene;
+    uncorrected.numerics.correction = false;
+    const Model with = make_model(scene, plans), without = make_model(uncorrected, plans);
+    const Dynamics start = test::advanced(without, initial_dynamics(without), 0.1, row.function.past_levels + 1);
+    const Dynamics on = take_step(with, start, 0.1).value().dynamics,
+                   off = take_step(without, start, 0.1).value().dynamics;
+    for (std::size_t k = 0; k < on.vesicles.size(); ++k) {
+      const VesicleDynamics &a = on.vesicles[k], &b = off.vesicles[k];
+      const Matrix shift = a.position.values - b.position.values;
+      REQUIRE(shift.norm() > 1e-7);
+      History expected = b.history;
+      if (row.function.past_corrected) move_along(expected, {b.position.order, shift});
+      REQUIRE(a.history.levels.size() == expected.levels.size());
+      for (std::size_t l = 0; l < expected.levels.size(); ++l)
+        CHECK((a.history.levels[l].position.values - expected.levels[l].position.values).norm() < 1e-6 * shift.norm());
+    }
   }
 }
 
@@ -150,24 +197,30 @@ TEST_CASE("every scheme estimates the error of its step, and the estimate falls 
   coarse_scene.time.scheme = scheme;
   const Model coarse = make_model(coarse_scene, plans);
   const double start = 0.8;  // the shape is then on its way
+  const int levels = scheme_of(coarse_scene).past_levels;
   const auto estimate_and_error = [&](double dt) {
     constexpr int parts = 40;
-    const Dynamics before = test::advanced(fine, initial_dynamics(fine), (start - dt) / parts, parts);
-    Dynamics now = test::advanced(fine, before, dt / parts, parts);
+    const int back = std::max(levels, 1);
+    // Exact states a step apart, the latest last, and the one after.
+    std::vector<Dynamics> past{test::advanced(fine, initial_dynamics(fine), (start - back * dt) / parts, parts)};
+    for (int k = 0; k < back; ++k) past.push_back(test::advanced(fine, past.back(), dt / parts, parts));
+    Dynamics now = past.back();
     const Dynamics end = test::advanced(fine, now, dt / parts, parts);
     VesicleDynamics& v = now.vesicles[0];
     v.history = {};
     // The motion that a step of the scheme leaves: of its own order.
-    if (scheme_of(coarse_scene).past_levels > 0) {
+    if (levels > 0) {
       const VesicleState state = evaluate(fine, now).value().vesicles[0];
       v.motion = {state.velocity, state.tension};
     } else {
-      Dynamics alone = before;
+      Dynamics alone = past.front();
       alone.vesicles[0].history = {};
       v.motion = take_step(coarse, alone, dt).value().dynamics.vesicles[0].motion;
     }
-    if (scheme_of(coarse_scene).past_levels > 0)
-      v.history.levels.push_back({before.vesicles[0].position, before.vesicles[0].frame, {}, dt});
+    for (int k = 1; k <= levels; ++k) {
+      const VesicleDynamics& then = past[past.size() - 1 - std::size_t(k)].vesicles[0];
+      v.history.levels.push_back({then.position, then.frame, {}, dt});
+    }
     const Advance a = scheme_of(coarse_scene).advance({coarse, now, dt, coarse_scene.flows}).value();
     const double error =
         (a.vesicles[0].position.values - end.vesicles[0].position.values).norm() / std::sqrt(now.vesicles[0].area);
@@ -176,7 +229,10 @@ TEST_CASE("every scheme estimates the error of its step, and the estimate falls 
   const auto [estimate, error] = estimate_and_error(0.1);
   const auto [half_estimate, half_error] = estimate_and_error(0.05);
   INFO(estimate << " for " << error << ", " << half_estimate << " for " << half_error);
-  const double order = scheme == "bdf2" ? 3 : 2;
+  const std::map<std::string, double> orders{
+      {"bdf2", 3}, {"globally-implicit", 2}, {"block-implicit", 2}, {"block-jacobi", 2}, {"explicit", 2}};
+  REQUIRE(orders.contains(scheme));
+  const double order = orders.at(scheme);
   // To leading order the two are equal; the rest is of the next power of a step that is no small one. Where tension and
   // position come one after the other the error has further terms of the same order, which nothing tells.
   const bool one_by_one = scheme == "block-jacobi" || scheme == "explicit";
