@@ -500,8 +500,14 @@ TEST_CASE("no file of the fuzz corpus harms the program, whatever opens it", "[h
   const bool made = ::mkfifo(pipe, 0600) == 0;
   int runs = 0;
   const auto harmless = [&](std::vector<std::string> words) {
-    const Outcome outcome = desk(words);
+    Outcome outcome = desk(words);
     ++runs;
+    // HDF5 takes a refused allocation well, and the sanitizers only mention it, a line each time.
+    for (std::size_t at;
+         (at = outcome.err.find("WARNING: AddressSanitizer failed to allocate")) != std::string::npos;) {
+      const std::size_t first = at == 0 ? 0 : outcome.err.rfind('\n', at) + 1;
+      outcome.err.erase(first, outcome.err.find('\n', at) - first + 1);
+    }
     INFO(words[0] << " " << words[1] << ": " << outcome.status << " " << outcome.err);
     // The sanitizers' own status is 1, too; they say more than a sentence.
     CHECK((outcome.status == 0 || (outcome.status == 1 && one_sentence(outcome.err))));
