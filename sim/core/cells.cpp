@@ -38,6 +38,8 @@ std::vector<std::pair<int, int>> near_pairs(std::span<const Box> boxes, double r
         }
   }
   std::sort(pairs.begin(), pairs.end());
+  // So far out that 1 is lost in the number of a cell, neighbouring cells are the same one.
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }
 

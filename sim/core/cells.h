@@ -20,6 +20,8 @@ inline double distance(const Box& a, const Box& b) {
   return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0).norm();
 }
 
+inline Box united(const Box& a, const Box& b) { return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)}; }
+
 /// The pairs i < j of boxes that are no farther apart than `reach`, in ascending order.
 std::vector<std::pair<int, int>> near_pairs(std::span<const Box>, double reach);
 

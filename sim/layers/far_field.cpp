@@ -41,15 +41,29 @@ std::pair<Eigen::Index, double> nearest_source(const Sources& s, const Vec3& x) 
 
 FarField plan_far_field(std::shared_ptr<const std::vector<Sources>> sources, std::vector<TargetGroup> groups) {
   FarField far{std::move(sources), std::move(groups), {}};
-  far.excluded.resize(far.groups.size());
+  far.partial.resize(far.groups.size());
   return far;
 }
 
-void exclude(FarField& far, std::vector<Exclusion> exclusions) {
-  for (auto& list : far.excluded) list.clear();
-  for (Exclusion& e : exclusions) far.excluded[e.group].push_back(std::move(e));
-  for (auto& list : far.excluded)
-    std::sort(list.begin(), list.end(), [](const Exclusion& a, const Exclusion& b) { return a.surface < b.surface; });
+namespace {
+
+/// 0 ... count - 1 without some.
+std::vector<int> others(int count, const std::vector<int>& without) {
+  std::vector<int> all(count), rest;
+  std::iota(all.begin(), all.end(), 0);
+  std::set_difference(all.begin(), all.end(), without.begin(), without.end(), std::back_inserter(rest));
+  return rest;
+}
+
+}  // namespace
+
+void exclude(FarField& far, const std::vector<Exclusion>& exclusions) {
+  for (auto& list : far.partial) list.clear();
+  for (const Exclusion& e : exclusions)
+    far.partial[e.group].push_back({e.surface, others(static_cast<int>(far.groups[e.group].points.rows()), e.targets)});
+  for (auto& list : far.partial)
+    std::sort(list.begin(), list.end(),
+              [](const PartialView& a, const PartialView& b) { return a.surface < b.surface; });
 }
 
 void add_direct_sum(const Sources& s, const SourceDensities& density, const Matrix& points, Matrix& velocity) {
@@ -89,38 +103,26 @@ void add_direct_sum(const Sources& s, const SourceDensities& density, const Matr
   }
 }
 
-namespace {
-
-/// 0 ... count - 1 without some.
-std::vector<int> others(int count, const std::vector<int>& without) {
-  std::vector<int> all(count), rest;
-  std::iota(all.begin(), all.end(), 0);
-  std::set_difference(all.begin(), all.end(), without.begin(), without.end(), std::back_inserter(rest));
-  return rest;
-}
-
-}  // namespace
-
 std::vector<Matrix> far_velocity(const FarField& far, std::span<const SourceDensities> densities) {
   std::vector<Matrix> velocity(far.groups.size());
   const std::vector<Sources>& sources = *far.sources;
   parallel_for(static_cast<int>(far.groups.size()), [&](int i) {
     const TargetGroup& group = far.groups[i];
     velocity[i] = Matrix::Zero(group.points.rows(), 3);
-    auto excluded = far.excluded[i].begin();
+    auto partial = far.partial[i].begin();
     for (int j = 0; j < static_cast<int>(sources.size()); ++j) {
-      const bool some = excluded != far.excluded[i].end() && excluded->surface == j;
-      const Exclusion* here = some ? &*excluded++ : nullptr;
+      const bool some = partial != far.partial[i].end() && partial->surface == j;
+      const PartialView* view = some ? &*partial++ : nullptr;
       if (j == group.surface) continue;
-      if (!here) {
+      if (!view) {
         add_direct_sum(sources[j], densities[j], group.points, velocity[i]);
         continue;
       }
-      const std::vector<int> list = others(static_cast<int>(group.points.rows()), here->targets);
-      if (list.empty()) continue;
-      Matrix sum = Matrix::Zero(static_cast<Eigen::Index>(list.size()), 3);
-      add_direct_sum(sources[j], densities[j], group.points(list, Eigen::seqN(0, 3)), sum);
-      for (std::size_t k = 0; k < list.size(); ++k) velocity[i].row(list[k]) += sum.row(static_cast<Eigen::Index>(k));
+      if (view->targets.empty()) continue;
+      Matrix sum = Matrix::Zero(static_cast<Eigen::Index>(view->targets.size()), 3);
+      add_direct_sum(sources[j], densities[j], group.points(view->targets, Eigen::seqN(0, 3)), sum);
+      for (std::size_t k = 0; k < view->targets.size(); ++k)
+        velocity[i].row(view->targets[k]) += sum.row(static_cast<Eigen::Index>(k));
     }
   });
   return velocity;

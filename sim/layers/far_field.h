@@ -45,14 +45,20 @@ struct Exclusion {
   std::vector<int> targets;
 };
 
+/// The targets of a group that do see a surface which not all of them see, in ascending order.
+struct PartialView {
+  int surface;
+  std::vector<int> targets;
+};
+
 struct FarField {
   std::shared_ptr<const std::vector<Sources>> sources;  ///< many sets of targets may see the same ones
   std::vector<TargetGroup> groups;
-  std::vector<std::vector<Exclusion>> excluded;  ///< by group, in ascending order of the surface
+  std::vector<std::vector<PartialView>> partial;  ///< by group, in ascending order of the surface
 };
 FarField plan_far_field(std::shared_ptr<const std::vector<Sources>>, std::vector<TargetGroup>);
 /// In place of the exclusions that there were; they come by group.
-void exclude(FarField&, std::vector<Exclusion>);
+void exclude(FarField&, const std::vector<Exclusion>&);
 
 /// Velocity at the targets, points x 3 a group. Does not depend on the number of threads.
 std::vector<Matrix> far_velocity(const FarField&, std::span<const SourceDensities>);

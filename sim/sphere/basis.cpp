@@ -252,11 +252,13 @@ Vec3 unit_vector(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
+Vec3 grid_direction(const Basis& basis, Eigen::Index point) {
+  return unit_vector(basis.theta()[point % basis.latitudes()], basis.phi()[point / basis.latitudes()]);
+}
+
 Matrix grid_directions(const Basis& basis) {
   Matrix s(basis.points(), 3);
-  for (int j = 0; j < basis.longitudes(); ++j)
-    for (int i = 0; i < basis.latitudes(); ++i)
-      s.row(i + basis.latitudes() * j) = unit_vector(basis.theta()[i], basis.phi()[j]).transpose();
+  for (Eigen::Index k = 0; k < basis.points(); ++k) s.row(k) = grid_direction(basis, k).transpose();
   return s;
 }
 

@@ -51,7 +51,8 @@ class Basis {
 
 /// The point of the unit sphere at colatitude theta and longitude phi.
 Vec3 unit_vector(double theta, double phi);
-/// ... of every grid point, as rows.
+/// ... of a grid point, and of every one, as rows.
+Vec3 grid_direction(const Basis&, Eigen::Index point);
 Matrix grid_directions(const Basis&);
 
 /// Orthonormal tangents of the unit sphere at s, in the directions of increasing theta and phi.

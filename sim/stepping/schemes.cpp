@@ -174,7 +174,7 @@ Attempt<Advance> bdf2(const StepProblem& problem) {
     // Velocities relative to the frame, that of x_n turned with it: `guess` stands on top of the frame's motion at the
     // new time.
     const Matrix start = guess[k].velocity.values - frame_velocity(rigid_body(now[k]), moving.last[k]).values;
-    const Matrix end = m.motion.velocity.values - frame_velocity(rigid_body(frozen.at[k]), moving.last[k]).values;
+    const Matrix end = (m.position.values - frozen.at[k].values - frozen.behind[k].values) / frozen.c;
     m.error = share / rest * size_of(v, now[k].values + dt / 2 * (start + end) - m.position.values);
     m.history = pushed(v.history, {v.position, v.frame, moving.mean[k], dt}, levels);
   }

@@ -97,10 +97,6 @@ struct Surface {
   Sources sources;
 };
 
-Vec3 parameter_of(const Surface& s, Eigen::Index k) {
-  return unit_vector(s.basis.theta()[k % s.basis.latitudes()], s.basis.phi()[k / s.basis.latitudes()]);
-}
-
 /// The nearest pair of source points, where it is nearer than `best`.
 struct NearestSources {
   double distance;
@@ -132,7 +128,8 @@ Gap gap_between(const Surface& a, const Surface& b, int first, int second) {
   const double spacing = b.sources.spacing[nearest.second];
   if (nearest.distance < 3 * std::max(a.sources.spacing[nearest.first], spacing)) {
     const Approach approach = nearest_approach(
-        a.position, b.position, {parameter_of(a, nearest.first), parameter_of(b, nearest.second), nearest.distance});
+        a.position, b.position,
+        {grid_direction(a.basis, nearest.first), grid_direction(b.basis, nearest.second), nearest.distance});
     const Vec3 x = sample_points(a.position, approach.s.transpose()).row(0).transpose();
     gap.distance = approach.distance;
     // Where they cross, the least distance is zero up to rounding and has no side.
@@ -161,7 +158,7 @@ Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
   double reach = 0;
   for (const auto& surface : surfaces) {
     boxes.push_back(surface->sources.box);
-    all = {all.low.cwiseMin(boxes.back().low), all.high.cwiseMax(boxes.back().high)};
+    all = united(all, boxes.back());
     reach = std::max(reach, surface->sources.spacing.maxCoeff());
   }
   // Pairs whose boxes are farther apart than the least gap found so far cannot have a smaller one.

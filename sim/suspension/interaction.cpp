@@ -12,12 +12,6 @@ namespace sim {
 
 namespace {
 
-Vec3 direction(const Basis& basis, Eigen::Index k) {
-  return unit_vector(basis.theta()[k % basis.latitudes()], basis.phi()[k / basis.latitudes()]);
-}
-
-Box united(const Box& a, const Box& b) { return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)}; }
-
 /// Vesicles of which targets may need more than the coarse grid of another, both ways.
 std::vector<PairPlan> candidates(const Interaction& w, double coarse_spacings) {
   const std::vector<Sources>& coarse = *w.far.sources;
@@ -56,7 +50,7 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
     if (options.near_rule && to_box < reach) {
       const auto [source, away] = nearest_source(s, x);
       if (away < (options.near_spacings + 1) * s.spacing[source]) {
-        const NearestPoint nearest = nearest_point(positions[j], x, direction(*w.source_basis[j], source));
+        const NearestPoint nearest = nearest_point(positions[j], x, grid_direction(*w.source_basis[j], source));
         if (nearest.inside) throw std::domain_error(fmt::format("vesicle {} crosses vesicle {}", pair.target, j));
         if (nearest.distance < options.near_spacings * s.spacing[source]) {
           pair.near.push_back(k);

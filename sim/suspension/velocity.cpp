@@ -178,7 +178,7 @@ FlowSamples velocity_at(const FlowField& field, const Matrix& points) {
         exclusions.push_back({b, j, std::move(list)});
   }
   FarField far = plan_far_field(field.coarse, std::move(groups));
-  exclude(far, std::move(exclusions));
+  exclude(far, exclusions);
   const std::vector<Matrix> seen = far_velocity(far, field.coarse_densities);
   parallel_for(blocks, [&](int b) {
     PointBlock& block = all[b];

@@ -17,7 +17,7 @@ using test::pi;
 TEST_CASE("cells find the very pairs of near boxes that trying all finds, in the same order") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  for (const double spread : {0.5, 3.0, 1e4})
+  for (const double spread : {0.5, 3.0, 1e4, 1e20})
     for (const double reach : {0.0, 0.3, 10.0}) {
       std::vector<Box> boxes;
       for (int k = 0; k < 200; ++k) {
@@ -32,6 +32,12 @@ TEST_CASE("cells find the very pairs of near boxes that trying all finds, in the
       INFO(spread << " " << reach);
       CHECK(near_pairs(boxes, reach) == all);
     }
+}
+
+TEST_CASE("a pair of boxes is found once, however far from the others it lies") {
+  const auto at = [](double x) { return Box{Vec3(x - 1, -1, -1), Vec3(x + 1, 1, 1)}; };
+  const std::vector<Box> boxes{at(0), at(1e20), at(1e20), at(3)};
+  CHECK(near_pairs(boxes, 2) == std::vector<std::pair<int, int>>{{0, 3}, {1, 2}});
 }
 
 TEST_CASE("the kernels are the closed forms, for points, lanes and arrays alike") {
