@@ -48,6 +48,7 @@ int report_end(const SimulationReport& report, const fs::path& trajectory, const
     return 1;
   }
   say(options, there + (report.already_finished ? ", finished before" : ""));
+  if (!options.quiet && report.time > 0) say(options, error_summary(trajectory));
   return 0;
 }
 

@@ -5,6 +5,7 @@
 #include "app/scene/scene_text.h"
 
 #include "render/image/image.h"
+#include "sim/measures/statement.h"
 #include "sim/trajectory/trajectory.h"
 
 #include <fmt/format.h>
@@ -72,13 +73,15 @@ std::string scene_summary(const Settings& settings) {
   const sim::Scene& scene = settings.scene;
   std::string flows;
   for (const sim::FlowParameters& flow : scene.flows) flows += (flows.empty() ? "" : " + ") + flow.kind;
-  const double every = scene.time.save_every.value_or(scene.time.step);
+  const bool adapts = sim::steps_adapt(scene.time);
+  const double step = scene.time.step.value_or(scene.time.end), every = sim::save_interval(scene.time).value_or(step);
   const std::int64_t states = intervals(scene.time.end, every) + 1;
   const std::int64_t frames =
       settings.movie.time_per_frame > 0 ? frame_count(scene.time.end, settings.movie.time_per_frame) : states;
   std::string text = fmt::format("# {}\n", scene.title.empty() ? "(no title)" : printable(scene.title));
-  text += fmt::format("# flow {}; time 0 to {}, about {}, {}\n", flows, scene.time.end,
-                      counted(intervals(scene.time.end, std::min(every, scene.time.step)), "step"),
+  text += fmt::format("# flow {}; time 0 to {}, {}{}, {}\n", flows, scene.time.end, adapts ? "" : "about ",
+                      adapts ? fmt::format("steps of tolerance {}", sim::tolerance_of(scene.time))
+                             : counted(intervals(scene.time.end, std::min(every, step)), "step"),
                       counted(states, "saved state"));
   for (const sim::VesicleParameters& v : scene.vesicles)
     text += fmt::format("# vesicle: {}, order {}, viscosity contrast {}, bending modulus {}\n", v.shape, v.order,
@@ -87,6 +90,25 @@ std::string scene_summary(const Settings& settings) {
                       settings.view.size[1], settings.movie.frame_rate);
   for (const auto& figure : settings.figures) text += fmt::format("# figure {}\n", figure.kind);
   return text;
+}
+
+namespace {
+
+std::string error_line(const sim::TrajectoryReader& trajectory, const std::vector<sim::StepRecord>& steps) {
+  sim::Plans plans;
+  const sim::ErrorStatement e = stated_errors(plans, steps, trajectory.state(trajectory.count() - 1));
+  return fmt::format(
+      "position {:.1e} R0 by the steps; double layer of rigid motions {:.1e}; linear solves {:.1e}; area {:.1e}, "
+      "volume "
+      "{:.1e}; {:.2g} % of the curvature's spectrum in its tail",
+      e.time, e.quadrature, e.solve, e.area, e.volume, 100 * e.space);
+}
+
+}  // namespace
+
+std::string error_summary(const std::filesystem::path& path) {
+  const sim::TrajectoryReader trajectory(path);
+  return "estimated errors: " + error_line(trajectory, trajectory.steps());
 }
 
 std::string trajectory_summary(const std::filesystem::path& path) {
@@ -104,6 +126,7 @@ std::string trajectory_summary(const std::filesystem::path& path) {
   const std::vector<sim::StepRecord> steps = trajectory.steps();
   text += fmt::format("steps      {}\n", steps.size());
   if (!steps.empty()) {
+    if (states > 0) text += fmt::format("errors     {}\n", error_line(trajectory, steps));
     text += "largest over all steps and vesicles:\n";
     for (const Extreme& e : extremes(steps)) text += fmt::format("  {:<14} {:.6g}\n", e.name, e.value);
   }

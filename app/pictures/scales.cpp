@@ -48,7 +48,7 @@ double NaturalScales::rounding_of(sim::FieldScale scale) const {
 NaturalScales natural_scales(const sim::Scene& scene, const sim::State& state, double area_radius) {
   NaturalScales s;
   s.length = area_radius;
-  s.solve = scene.numerics.gmres_tolerance;
+  s.solve = sim::solve_tolerance(scene);
   s.velocity = 0;
   std::vector<sim::FlowParameters> flows = scene.flows;
   for (sim::FlowParameters& flow : flows) flow.time_factor = "constant";  // where it oscillates: at its strongest

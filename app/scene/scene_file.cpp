@@ -158,9 +158,21 @@ struct Reader {
               fmt::format("'out' must be a file name without control characters, not '{}'", p.out));
   }
   void check(const toml::table& table, sim::TimeParameters& p) const {
-    for (const auto& [key, length] :
-         {std::pair{"step", p.step}, std::pair{"save_every", p.save_every.value_or(p.step)}})
-      if (const double steps = p.end / length; steps > most_steps)
+    if (p.step && p.tolerance)
+      fail_at(source_of(table, "step"), "give 'step', fixed steps, or 'tolerance', steps that follow it, not both");
+    const bool adapts = sim::steps_adapt(p);
+    p.scheme = adapts ? "adaptive" : p.scheme.value_or("bdf2");
+    if (adapts && p.step)
+      fail_at(source_of(table, "step"),
+              "the scheme 'adaptive' chooses its steps; give 'tolerance' or another 'scheme'");
+    if (!adapts && p.tolerance)
+      fail_at(source_of(table, "tolerance"), fmt::format("the scheme '{}' takes fixed steps; give 'step'", *p.scheme));
+    if (!adapts && !p.step)
+      fail_at(source_of(table, "scheme"), fmt::format("the scheme '{}' takes fixed steps; give 'step'", *p.scheme));
+    if (adapts) p.tolerance = sim::tolerance_of(p);
+    p.save_every = sim::save_interval(p);
+    for (const auto& [key, length] : {std::pair{"step", p.step}, std::pair{"save_every", p.save_every}})
+      if (const double steps = length ? p.end / *length : 0; steps > most_steps)
         fail_at(source_of(table, key), fmt::format("{:.3g} steps are too many; '{}' must be longer", steps, key));
   }
   void check(const toml::table& table, sim::PlacementParameters& p) const {

@@ -18,13 +18,19 @@ sim::State interpolated(const sim::State& a, const sim::State& b, double time) {
   for (std::size_t k = 0; k < state.vesicles.size(); ++k) {
     const sim::VesicleState &before = a.vesicles[k], &after = b.vesicles[k];
     const sim::Matrix &x0 = after.position_before.values, &x1 = after.position.values;
-    const sim::Matrix &v0 = after.velocity_before.values, &v1 = after.velocity.values;
+    const sim::Matrix v0 = after.velocity_before.values, v1 = after.velocity.values + after.sliding.values;
     sim::VesicleState& v = state.vesicles[k];
     v.position.values = rest * rest * (1 + 2 * u) * x0 + u * u * (3 - 2 * u) * x1 + h * u * rest * (rest * v0 - u * v1);
     v.velocity.values = 6 * u * rest / h * (x1 - x0) + rest * (1 - 3 * u) * v0 + u * (3 * u - 2) * v1;
-    // The tension of a is known in a's parametrisation only.
-    if (before.relabelled == after.relabelled && before.tension.order == after.tension.order)
-      v.tension.values = rest * before.tension.values + u * after.tension.values;
+    // What is not carried to b's parametrisation is known in a's only.
+    if (before.relabelled != after.relabelled || before.tension.order != after.tension.order) continue;
+    v.tension.values = rest * before.tension.values + u * after.tension.values;
+    v.sliding.values = rest * before.sliding.values + u * after.sliding.values;
+    v.velocity.values -= v.sliding.values;
+    v.tracers = (rest * before.tracers + u * after.tracers).rowwise().normalized();
+    v.labels = before.labels;  // until they are laid anew
+    if (before.labels_laid == after.labels_laid)
+      v.labels.values = rest * before.labels.values + u * after.labels.values;
   }
   return state;
 }

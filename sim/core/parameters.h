@@ -9,6 +9,7 @@
 
 #include "sim/core/types.h"
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <limits>
@@ -41,7 +42,7 @@ struct Parameter {
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 inline constexpr std::array<std::string_view, 3> time_factor_names{"constant", "oscillating", "step"};
-inline constexpr std::array<std::string_view, 3> reparametrization_names{"auto", "always", "off"};
+inline constexpr std::array<std::string_view, 4> reparametrization_names{"moving", "auto", "always", "off"};
 
 inline constexpr std::array<std::string_view, 2> preconditioner_names{"spectral", "block"};
 
@@ -87,11 +88,13 @@ void visit(P& p, V&& v) {
 
 struct TimeParameters {
   double end = 0;
-  double step = 0.1;
-  std::optional<double> tolerance;  ///< reserved for adaptive steps
-  std::string scheme = "bdf2";
-  std::optional<double> save_every;  ///< not given: every step
+  std::optional<double> tolerance;    ///< of adaptive steps
+  std::optional<double> step;         ///< of fixed ones
+  std::optional<std::string> scheme;  ///< not given: bdf2 where a step is given, adaptive otherwise
+  std::optional<double> save_every;   ///< not given: save_interval()
 };
+/// Tolerance where neither it nor a step is given; steps whose error is below the least are rounding and residuals.
+inline constexpr double default_tolerance = 1e-3, least_tolerance = 1e-6;
 
 template <class P, class V>
 requires std::same_as<std::remove_const_t<P>, TimeParameters>
@@ -102,27 +105,33 @@ void visit(P& p, V&& v) {
               .minimum = 0,
               .required = true},
     p.end);
-  v(Parameter{.name = "step",
-              .unit = "time",
-              .meaning = "time step; shortened where save_every or end is not a multiple of it",
-              .minimum = 0,
-              .exclusive_minimum = true},
-    p.step);
   v(Parameter{.name = "tolerance",
               .unit = "",
-              .meaning = "reserved for adaptive steps",
+              .meaning =
+                  "error of position that steps may leave, in area radii for each radius that the membrane moves",
+              .minimum = least_tolerance,
+              .maximum = 0.1,
+              .when_absent = "0.001, or none where a step is given"},
+    p.tolerance);
+  v(Parameter{.name = "step",
+              .unit = "time",
+              .meaning = "fixed time step; shortened where save_every or end is not a multiple of it",
               .minimum = 0,
               .exclusive_minimum = true,
-              .when_absent = "fixed steps",
-              .refused = "adaptive steps do not exist yet; give time.step instead"},
-    p.tolerance);
-  v(Parameter{.name = "scheme", .unit = "", .meaning = "time stepping scheme", .catalogue = "schemes"}, p.scheme);
+              .when_absent = "steps follow the tolerance"},
+    p.step);
+  v(Parameter{.name = "scheme",
+              .unit = "",
+              .meaning = "time stepping scheme",
+              .catalogue = "schemes",
+              .when_absent = "adaptive, or bdf2 where a step is given"},
+    p.scheme);
   v(Parameter{.name = "save_every",
               .unit = "time",
               .meaning = "time between saved states",
               .minimum = 0,
               .exclusive_minimum = true,
-              .when_absent = "every step"},
+              .when_absent = "end/200, or step"},
     p.save_every);
 }
 
@@ -226,12 +235,12 @@ inline constexpr double default_gap_floor = 1e-3, default_repulsion_range = 0.05
 
 struct NumericsParameters {
   bool correction = true;
-  std::string reparametrization = "auto";
+  std::string reparametrization = "moving";
   int upsampling = 0;  ///< q / p of differentiation; 0: Algorithm 1 chooses per vesicle
   double aliasing_tolerance = 1e-4;
-  double gmres_tolerance = 1e-10;
-  int source_order = 0;  ///< degree of the rotated source grids; 0: p + 1
-  int label_order = 0;   ///< degree of the material labels; 0: max(2p, 24)
+  std::optional<double> gmres_tolerance;  ///< not given: a tenth of the time tolerance, 1e-10 for fixed steps
+  int source_order = 0;                   ///< degree of the rotated source grids; 0: p + 1
+  int label_order = 0;                    ///< degree of the material labels; 0: max(2p, 24)
   bool implicit_tension = true;
   std::string preconditioner = "spectral";
   int interaction_order = 0;  ///< degree of the smooth source grids between vesicles; 0: p^(3/2)
@@ -254,7 +263,8 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "correction", .unit = "", .meaning = "restore area and volume after each step"}, p.correction);
   v(Parameter{.name = "reparametrization",
               .unit = "",
-              .meaning = "move grid points along the membrane when needed, at every step, or never",
+              .meaning = "grid points slide along the membrane as part of each step, are moved when needed, at every "
+                         "step, or never",
               .choices = reparametrization_names},
     p.reparametrization);
   v(Parameter{.name = "upsampling",
@@ -276,7 +286,8 @@ void visit(P& p, V&& v) {
               .meaning = "relative residual of each linear solve",
               .minimum = 0,
               .maximum = 1e-2,
-              .exclusive_minimum = true},
+              .exclusive_minimum = true,
+              .when_absent = "a tenth of time.tolerance, 1e-10 with fixed steps"},
     p.gmres_tolerance);
   v(Parameter{.name = "source_order",
               .unit = "",
@@ -462,6 +473,28 @@ struct Scene {
   NumericsParameters numerics;
   BuoyancyParameters buoyancy;
 };
+
+/// Whether steps follow a tolerance.
+inline bool steps_adapt(const TimeParameters& time) { return time.scheme ? *time.scheme == "adaptive" : !time.step; }
+inline double tolerance_of(const TimeParameters& time) { return time.tolerance.value_or(default_tolerance); }
+/// Time between saved states, which are at its multiples; adaptive steps are no frames of a movie. None: there is no
+/// time.
+inline std::optional<double> save_interval(const TimeParameters& time) {
+  constexpr double states = 200;
+  if (time.save_every || time.end == 0) return time.save_every;
+  return steps_adapt(time) ? time.end / states : time.step;
+}
+/// Relative residual of a linear solve: a hundredth of what a step may err leaves no trace, a tenth hardly one. The
+/// volume of a vesicle with little viscosity inside answers to a residual by one over its contrast.
+inline double solve_tolerance(const Scene& scene) {
+  if (scene.numerics.gmres_tolerance) return *scene.numerics.gmres_tolerance;
+  if (!steps_adapt(scene.time)) return 1e-10;
+  double tolerance = 0.1 * tolerance_of(scene.time);
+  for (const VesicleParameters& v : scene.vesicles)
+    tolerance = std::min(tolerance, 0.1 * tolerance_of(scene.time) * v.viscosity_contrast);
+  constexpr double least = 1e-11;
+  return std::max(tolerance, least);
+}
 
 /// A table of the scene file.
 struct Section {

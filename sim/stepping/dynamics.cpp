@@ -18,6 +18,7 @@ constexpr double largest_number = 1e150;  // the square of every number is one, 
 template <class Archive, class D>
 void transfer(Archive& ar, D& d) {
   ar(d.step), ar(d.saves), ar(d.time), ar(d.dt_limit), ar(d.calm);
+  ar(d.control.order), ar(d.control.at_order), ar(d.control.held);
   ar.size(d.vesicles);
   for (auto& v : d.vesicles) visit(v, [&](Part, auto& member) { ar(member); });
 }
@@ -105,7 +106,9 @@ void check(const VesicleDynamics& v, const TrajectoryLayout& layout) {
       }
     } else if constexpr (std::is_same_v<Member, History>) {
       for (const PastLevel& level : member.levels) {
-        if (!is_field(level.position, p, 3)) refuse("its fields are of different orders");
+        if (!is_field(level.position, p, 3) || !is_field(level.motion.velocity, p, 3) ||
+            !is_field(level.motion.tension, p, 1) || !is_field(level.sliding, p, 3))
+          refuse("its fields are of different orders");
         if (!(level.dt > 0)) refuse("a time in it is impossible");
       }
     } else if constexpr (std::is_same_v<Member, Matrix>) {
@@ -152,7 +155,8 @@ std::vector<double> serialised(const Dynamics& d) {
 std::size_t resume_numbers(const Dynamics& d, int past_levels) {
   Dynamics full = d;
   for (VesicleDynamics& v : full.vesicles)
-    while (static_cast<int>(v.history.levels.size()) < past_levels) v.history.levels.push_back({v.position, {}, {}, 1});
+    while (static_cast<int>(v.history.levels.size()) < past_levels)
+      v.history.levels.push_back({v.position, v.motion, v.sliding, 1});
   return serialised(full).size();
 }
 
@@ -164,6 +168,7 @@ Dynamics deserialised(std::span<const double> numbers, const TrajectoryLayout& l
   if (reader.at != numbers.size()) refuse("there is more in it");
   for (const VesicleDynamics& v : d.vesicles) check(v, layout);
   check_histories(d);
+  if (d.control.order < 1 || d.control.order > highest_order) refuse("an order of time stepping in it is impossible");
   if (d.saves < 1 || d.time < 0 || !(d.dt_limit > 0)) refuse("a time in it is impossible");
   return d;
 }

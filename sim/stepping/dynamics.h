@@ -17,18 +17,19 @@ namespace sim {
 struct VesicleDynamics {
   Coefficients position;  ///< x_n
   History history;        ///< x_{n-1}, ... as far as the scheme looks back; empty at a start
-  Motion motion;          ///< velocity and tension of the last solve: the next guess
+  Motion motion;          ///< velocity and tension of the last solve
+  Coefficients sliding;   ///< w_n: velocity of the grid points along the membrane, relative to it
   Frame frame;            ///< the motion of its shape at t_n
   Coefficients labels;
   Matrix tracers;               ///< parameters of the tracer dots
   Coefficients saved_position;  ///< of the last saved state, in the current parametrisation
-  Coefficients saved_velocity;
+  Coefficients saved_velocity;  ///< of its points, sliding included
   double area = 0, volume = 0;  ///< A0, V0: of the initial surface as represented
   double energy = 0;            ///< E/(8 pi kappa) of x_n
   double tail = 0;              ///< share of the mean curvature's spectrum in its last quarter of degrees
   int upsampling = 2;
-  double upsampling_due = 0;  ///< time of the next run of Algorithm 1
-  double high_share = 0;      ///< high-degree share of x after the last relabelling, the least since
+  std::int64_t upsampling_due = 0;  ///< step of the next run of Algorithm 1
+  double high_share = 0;            ///< high-degree share of x after the last relabelling, the least since
   std::int64_t relabelled = 0, labels_laid = 0;
   double labels_laid_time = 0;
   bool warned = false;  ///< the warning that its order does not resolve it was given: once per vesicle and run
@@ -36,11 +37,11 @@ struct VesicleDynamics {
 
 /// What a member is to those who walk the state.
 enum class Part {
-  vector,   ///< three fields of the material, of the order of the position
-  scalar,   ///< one field of the material, of that order
-  label,    ///< three fields of the material, of the order of the labels
+  vector,   ///< three fields on the parameters, of the order of the position
+  scalar,   ///< one field, of that order
+  label,    ///< three fields, of the order of the labels
   points,   ///< parameters of material points
-  history,  ///< positions of the material at earlier times
+  history,  ///< fields at earlier times
   motion,   ///< a frame: of the whole vesicle, not of its points
   number,
 };
@@ -52,6 +53,7 @@ void visit(Vesicle& v, F&& f) {
   f(Part::history, v.history);
   f(Part::vector, v.motion.velocity);
   f(Part::scalar, v.motion.tension);
+  f(Part::vector, v.sliding);
   f(Part::label, v.labels);
   f(Part::vector, v.saved_position);
   f(Part::vector, v.saved_velocity);
@@ -74,17 +76,28 @@ void visit(Vesicle& v, F&& f) {
 /// points.
 void carry(Plans&, const Relabelling&, VesicleDynamics&);
 
+/// Highest order of adaptive steps: higher ones are stable for shorter steps only.
+inline constexpr int highest_order = 4;
+
+/// What adaptive steps remember of the past; the next step is as long as the limit of Dynamics.
+struct Control {
+  int order = 1;
+  std::int64_t at_order = 0;  ///< accepted steps of that order
+  bool held = false;          ///< the last attempt failed: the step does not grow
+};
+
 struct Dynamics {
   std::int64_t step = 0;   ///< accepted steps
   std::int64_t saves = 0;  ///< saved states, the initial one included
   double time = 0;
-  double dt_limit = 0;    ///< longest step at present: halved by a failure, doubled after calm steps
-  std::int64_t calm = 0;  ///< accepted steps since dt_limit changed
+  double dt_limit = 0;    ///< longest step at present; of fixed ones halved by a failure, doubled after calm steps
+  std::int64_t calm = 0;  ///< of fixed steps those since a failure, of adaptive ones those that were hopelessly short
+  Control control;
   std::vector<VesicleDynamics> vesicles;
 };
 
 /// Form of the resume record; a record of another version is refused.
-inline constexpr int resume_version = 2;
+inline constexpr int resume_version = 3;
 /// More levels than any scheme looks back.
 inline constexpr int most_past_levels = 8;
 

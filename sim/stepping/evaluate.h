@@ -10,7 +10,11 @@ Geometry measured_geometry(Plans&, const Coefficients& position);
 
 /// Velocity and tension that solve (3a)-(3b) at the present positions, and all else that is saved.
 Attempt<State> evaluate(const Model&, const Dynamics&);
-/// Takes velocity, tension and frames of a state of the present for what the next step starts from and expects.
+/// A state between two successive ones, or at the later: by the polynomials in time of the step that led from one to
+/// the other, through one level more than its formula has, with area and volume corrected. No solve.
+State interpolated(const Model&, const Dynamics& before, const Dynamics& after, double time);
+/// Takes velocity, tension, sliding and frames of a state of the present for what the next step starts from and
+/// expects.
 void expect(const Model&, Dynamics&, const State&);
 /// Call it with a state that has been saved: it becomes the earlier end of the next interpolation.
 void mark_saved(Dynamics&, const State&);

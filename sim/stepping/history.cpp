@@ -1,5 +1,7 @@
 #include "sim/stepping/history.h"
 
+#include <type_traits>
+
 namespace sim {
 
 History pushed(const History& history, PastLevel newest, int most_levels) {
@@ -14,17 +16,10 @@ History pushed(const History& history, PastLevel newest, int most_levels) {
 }
 
 void carry(Plans& plans, const Relabelling& r, History& history) {
-  for (PastLevel& level : history.levels) level.position = pulled_back(plans, r, level.position);
-}
-
-void move_along(History& history, const Coefficients& shift) {
-  for (std::size_t k = 0; k < history.levels.size(); ++k) {
-    Coefficients& x = history.levels[k].position;
-    // To the present, by the steps in between, and back.
-    for (std::size_t j = k + 1; j-- > 0;) x = carried(history.levels[j].carrier, history.levels[j].dt, x);
-    x.values += shift.values;
-    for (std::size_t j = 0; j <= k; ++j) x = carried(history.levels[j].carrier, -history.levels[j].dt, x);
-  }
+  for (PastLevel& level : history.levels)
+    visit_level(level, [&]<class Member>(const char*, Member& member) {
+      if constexpr (std::is_same_v<Member, Coefficients>) member = pulled_back(plans, r, member);
+    });
 }
 
 }  // namespace sim

@@ -1,10 +1,13 @@
-// The past of a vesicle: its positions at earlier times, as far back as a multistep scheme asks for. Level 0 is that of
-// the step before, with the length of the step that led on from it.
+// The past of a vesicle: what is known of it at earlier times, as far back as a multistep scheme asks for. Level 0 is
+// that of the step before, with the length of the step that led on from it.
 //
-// Positions belong to the present parametrisation: whoever moves the grid points along the membrane carries them too.
+// All fields belong to the present parametrisation: whoever relabels the membrane carries them too. The correction of
+// area and volume does not move them: old levels stay as they were accepted, and the correction acts like the
+// multiplier of a constraint, which keeps the order of a scheme. Moved along, they would make the two a splitting of
+// first order.
 #pragma once
 
-#include "sim/membrane/rigid.h"
+#include "sim/membrane/sheet.h"
 #include "sim/surface/reparametrize.h"
 
 #include <vector>
@@ -13,9 +16,9 @@ namespace sim {
 
 struct PastLevel {
   Coefficients position;  ///< x_{n-k}
-  Frame frame;            ///< motion of the shape at that time
-  Frame carrier;          ///< mean motion of the frame in the step that led on from it
-  double dt = 0;          ///< length of that step
+  Motion motion;          ///< velocity and tension at that time
+  Coefficients sliding;   ///< w_{n-k}: velocity of the grid points along the membrane, relative to it
+  double dt = 0;          ///< length of the step that led on from it
 };
 
 struct History {
@@ -26,8 +29,9 @@ struct History {
 template <class Level, class F>
 void visit_level(Level& level, F&& f) {
   f("position", level.position);
-  f("frame", level.frame);
-  f("carrier", level.carrier);
+  f("velocity", level.motion.velocity);
+  f("tension", level.motion.tension);
+  f("sliding", level.sliding);
   f("dt", level.dt);
 }
 
@@ -36,8 +40,5 @@ History pushed(const History&, PastLevel newest, int most_levels);
 
 /// After a relabelling: f(map(s')) of every level.
 void carry(Plans&, const Relabelling&, History&);
-
-/// Moves all levels along with a shift of the present position, turned back as the steps since have turned the vesicle.
-void move_along(History&, const Coefficients& shift);
 
 }  // namespace sim

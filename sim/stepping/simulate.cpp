@@ -1,10 +1,13 @@
 #include "sim/stepping/simulate.h"
 
+#include "sim/stepping/control.h"
+
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace sim {
 
@@ -15,8 +18,9 @@ constexpr double same_time = 1e-9;  ///< times nearer than this share of a step 
 /// Time of the next saved state: multiples of save_every, and the end. Not counted from the last one, which may have
 /// been the end of a run that is continued, or saved by another measure.
 double save_time(const Scene& scene, const Dynamics& d) {
-  if (!scene.time.save_every) return scene.time.end;
-  const double every = *scene.time.save_every;
+  const std::optional<double> interval = save_interval(scene.time);
+  if (!interval) return scene.time.end;
+  const double every = *interval;
   return std::min((std::floor(d.time / every + same_time) + 1) * every, scene.time.end);
 }
 
@@ -26,28 +30,67 @@ double step_length(const Dynamics& d, double target) {
   return left / std::max(1.0, std::ceil(left / d.dt_limit - same_time));
 }
 
-/// Halves a failing step down to step / 2^step_retries, and lets it grow again after some calm ones.
-Attempt<Step> step_with_retries(const Model& s, Dynamics& d, double target, const SimulationObserver& observer) {
-  constexpr std::int64_t calm_enough = 8;
+/// What a failed attempt leads to: a warning, and steps that are half as long for a while; or the end, after too many.
+std::optional<Rejection> failed(Dynamics& d, const std::string& reason, double dt, int failures, int most,
+                                const SimulationObserver& observer) {
+  if (failures >= most) return Rejection{fmt::format("{}, also in steps of {:.3g}", reason, dt)};
+  if (observer.on_warning)
+    observer.on_warning(fmt::format("t = {:.6g}: {}; trying a step of {:.3g}", d.time, reason, dt / 2));
+  d.dt_limit = dt / 2;
+  d.calm = 0;
+  d.control.held = true;
+  return std::nullopt;
+}
+
+/// The exact time of a target that was met but for rounding.
+void settle(Step& step, double target, double dt) {
+  if (std::abs(step.dynamics.time - target) < same_time * dt) step.dynamics.time = step.record.time = target;
+}
+
+/// Fixed steps: halves a failing one down to step / 2^step_retries, and lets it grow again after some calm ones.
+Attempt<Step> fixed_step_with_retries(const Model& s, Dynamics& d, double target, const SimulationObserver& observer) {
   const double longest = longest_step(s.scene), shortest = std::ldexp(longest, -s.scene.numerics.step_retries);
   for (int retries = 0;; ++retries) {
     const double dt = step_length(d, target);
     if (Attempt<Step> step = take_step(s, d, dt)) {
       Dynamics& after = step->dynamics;
       step->record.retries = retries;
-      if (std::abs(after.time - target) < same_time * dt) after.time = step->record.time = target;
-      if (++after.calm >= calm_enough && d.dt_limit < longest) {
-        after.dt_limit = std::min(2 * d.dt_limit, longest);
-        after.calm = 0;
-      }
+      settle(*step, target, dt);
+      if (++after.calm >= calm_enough) after.dt_limit = std::min(2 * d.dt_limit, longest);
+      after.control.held = false;
       return step;
     } else {
-      const std::string& reason = step.rejection().reason;
-      if (dt / 2 < shortest * (1 - same_time)) return Rejection{fmt::format("{}, also in steps of {:.3g}", reason, dt)};
-      if (observer.on_warning)
-        observer.on_warning(fmt::format("t = {:.6g}: {}; trying a step of {:.3g}", d.time, reason, dt / 2));
-      d.dt_limit = dt / 2;
-      d.calm = 0;
+      const int most = dt / 2 < shortest * (1 - same_time) ? retries : retries + 1;
+      if (auto end = failed(d, step.rejection().reason, dt, retries, most, observer)) return *end;
+    }
+  }
+}
+
+/// Steps that follow the tolerance: too large an error shortens them in silence, a failure is told.
+Attempt<Step> adaptive_step(const Model& s, Dynamics& d, double target, const SimulationObserver& observer) {
+  int failures = 0;
+  constexpr int most_retries = 30;  // each takes a tenth at least: no error falls so slowly
+  for (int retries = 0;; ++retries) {
+    const double dt = length_towards(d.time, target, d.dt_limit);
+    Attempt<Step> step = take_step(s, d, dt);
+    if (!step) {
+      if (auto end = failed(d, step.rejection().reason, dt, failures++, s.scene.numerics.step_retries, observer))
+        return *end;
+    } else if (const std::optional<double> share = shortening(s, d, *step)) {
+      if (retries >= most_retries)
+        return Rejection{fmt::format("the error of a step stays above the tolerance, also in steps of {:.3g}", dt)};
+      d.dt_limit = *share * dt;
+      d.control.held = true;
+    } else {
+      step->record.retries = retries;
+      if (stalls(s, *step))
+        return Rejection{fmt::format(
+            "steps have become as short as {:.2g}, of which a million would not reach the end; the order of a "
+            "vesicle may be too low for its shape",
+            dt)};
+      plan_next(s, d, *step);
+      settle(*step, target, dt);
+      return step;
     }
   }
 }
@@ -61,8 +104,11 @@ TrajectoryLayout layout_for(const Scene& scene, const Dynamics& d) {
     layout.label_order = std::max(layout.label_order, v.labels.order);
     layout.tracers = int(v.tracers.rows());
   }
-  const double steps = std::ceil(scene.time.end / longest_step(scene));
-  const double saved = scene.time.save_every ? std::ceil(scene.time.end / *scene.time.save_every) : steps;
+  // How many steps a tolerance takes is not known; the file grows.
+  const double steps =
+      steps_adapt(scene.time) ? std::min(20 * scene.time.end, 1000.) : std::ceil(scene.time.end / longest_step(scene));
+  const std::optional<double> every = save_interval(scene.time);
+  const double saved = every ? std::ceil(scene.time.end / *every) : steps;
   layout.states = std::int64_t(std::min(saved, 1e6)) + 2;
   layout.steps = std::int64_t(std::min(std::max(steps, saved), 1e7)) + 16;
   layout.resume = std::int64_t(resume_numbers(d, scheme_of(scene).past_levels));
@@ -90,6 +136,14 @@ struct ResumeRecord {
   }
 };
 
+/// Starts take short steps, but none that doubling would not soon make long.
+bool possible_step(const Scene& scene, const Dynamics& d) {
+  constexpr int most_doublings = 60;
+  const double longest = steps_adapt(scene.time) ? std::max(scene.time.end, d.time) : longest_step(scene);
+  const bool unlimited = steps_adapt(scene.time);  // a scene without any motion
+  return d.dt_limit >= std::ldexp(longest, -most_doublings) && (unlimited || d.dt_limit <= longest * (1 + same_time));
+}
+
 /// The record against the rest of the file and the scene.
 Dynamics resumed(const TrajectoryWriter& file, const Scene& scene, const std::filesystem::path& path) {
   const ResumeRecord record{file, path};
@@ -99,11 +153,7 @@ Dynamics resumed(const TrajectoryWriter& file, const Scene& scene, const std::fi
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
     if (d.vesicles[k].position.order != scene.vesicles[k].order) record.refuse("an order is not that of the scene");
   if (!file.holds(d.step, d.time, d.saves)) record.refuse("it does not belong to the states of the file");
-  // Starts of nearly round vesicles take short steps, but none that doubling would not soon make long.
-  constexpr int most_doublings = 60;
-  if (const double longest = longest_step(scene);
-      d.dt_limit < std::ldexp(longest, -most_doublings) || d.dt_limit > longest * (1 + same_time))
-    record.refuse("the scene allows no such step");
+  if (!possible_step(scene, d)) record.refuse("the scene allows no such step");
   return d;
 }
 
@@ -138,16 +188,20 @@ class Run {
   bool reached_end() const { return d_.time >= scene_.time.end * (1 - 1e-12); }
   bool reached_limit() const { return options_.steps >= 0 && d_.step - first_step_ >= options_.steps; }
 
-  /// One step of Algorithm 2, up to the next saved state or switch of a flow, with all that is due after it.
+  /// One step of Algorithm 2, with all that is due in it and after it.
   std::optional<Rejection> step() {
-    const double due = save_time(scene_, d_), switched = next_switch(scene_.flows, d_.time);
-    Attempt<Step> step = step_with_retries(model_, d_, std::min(due, switched), noting_);
+    const double switched = next_switch(scene_.flows, d_.time);
+    const bool adapts = steps_adapt(scene_.time);
+    const double due = save_time(scene_, d_);
+    Attempt<Step> step = adapts ? adaptive_step(model_, d_, std::min(scene_.time.end, switched), noting_)
+                                : fixed_step_with_retries(model_, d_, std::min(due, switched), noting_);
     if (!step) return step.rejection();
-    d_ = std::move(step->dynamics);
+    const Dynamics before = std::exchange(d_, std::move(step->dynamics));
     records_.push_back(step->record);
     if (observer_.on_step) observer_.on_step(d_, step->record);
-    const bool every_step = !scene_.time.save_every;
-    if (every_step || d_.time == due)
+    if (adapts)
+      save_between(before);
+    else if (!scene_.time.save_every || d_.time == due)
       if (auto rejection = save()) return rejection;
     if (d_.time == switched)
       if (auto rejection = begin_anew()) return rejection;
@@ -181,6 +235,7 @@ class Run {
     for (VesicleDynamics& v : d_.vesicles) v.warned = v.tail > scene_.numerics.tail_warning;
     const State first = evaluate(model_, d_).value();
     expect(model_, d_, first);
+    start_steps(model_, d_);
     const TrajectoryLayout layout = layout_for(scene_, d_);
     mark_saved(d_, first);
     file_.emplace(
@@ -200,11 +255,23 @@ class Run {
   std::optional<Rejection> save() {
     const Attempt<State> state = evaluate(model_, d_);
     if (!state) return state.rejection();
-    file_->append(*state, records_);
-    records_.clear();
-    mark_saved(d_, *state);
-    if (observer_.on_state) observer_.on_state(*state);
+    append(*state);
     return std::nullopt;
+  }
+
+  /// All states that are due in the last step.
+  void save_between(const Dynamics& before) {
+    for (Dynamics at = before; at.time < d_.time;) {
+      at.time = save_time(scene_, at);
+      if (at.time <= d_.time) append(interpolated(model_, before, d_, at.time));
+    }
+  }
+
+  void append(const State& state) {
+    file_->append(state, records_);
+    records_.clear();
+    mark_saved(d_, state);
+    if (observer_.on_state) observer_.on_state(state);
   }
 
   std::optional<Rejection> begin_anew() {

@@ -1,6 +1,7 @@
 #include "sim/stepping/start.h"
 
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/sliding.h"
 #include "sim/sphere/norms.h"
 #include "sim/surface/dealias.h"
 #include "sim/surface/shapes.h"
@@ -8,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <type_traits>
 
@@ -20,10 +23,16 @@ constexpr double four_pi = 4 * std::numbers::pi;
 
 }  // namespace
 
+double fixed_step(const Scene& scene) {
+  if (!scene.time.step)
+    throw std::invalid_argument(fmt::format("the scheme '{}' takes fixed steps: give time.step", scheme_name(scene)));
+  return *scene.time.step;
+}
+
 double longest_step(const Scene& scene) {
   // Measured on a tank-treading prolate: 20 steps a period leave 1 % of the amplitude.
   constexpr double steps_a_period = 20;
-  double longest = scene.time.step;
+  double longest = fixed_step(scene);
   for (const FlowParameters& flow : scene.flows)
     if (const double frequency = oscillation(flow); frequency > 0)
       longest = std::min(longest, 1 / (steps_a_period * frequency));
@@ -31,6 +40,11 @@ double longest_step(const Scene& scene) {
 }
 
 namespace {
+
+/// Largest rate of strain of any vesicle by any cause.
+double strain(const Model& s, const Dynamics& d) {
+  return straining_rate(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, positions(d), sizes(d));
+}
 
 /// x := c + R (x - c)/|x - c|, the sphere of the given volume.
 void make_round(Coefficients& x, double volume) {
@@ -45,7 +59,7 @@ void make_round(Coefficients& x, double volume) {
 }
 
 /// What a vesicle starts with that no step has moved yet, or that other flows take from now on: the frame of the flow.
-void start_anew(const Model& s, double time, VesicleDynamics& v) {
+void start_anew(const Model& s, double time, std::int64_t step, VesicleDynamics& v) {
   const Basis& basis = s.plans.basis(v.position.order, v.position.order + 1);
   const Matrix points = basis.synthesize(v.position).values;
   const RigidBody body = rigid_body(v.position);
@@ -54,23 +68,68 @@ void start_anew(const Model& s, double time, VesicleDynamics& v) {
   v.motion.velocity = rigid_velocity(body, v.frame.motion);
   const NumericsParameters& n = s.scene.numerics;
   v.upsampling = n.upsampling > 0 ? n.upsampling : upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
-  v.upsampling_due = time + upsampling_steps * s.scene.time.step;
+  v.upsampling_due = step + upsampling_steps;
 }
 
-/// Longest step from a start: four until flows are switched again. A nearly round vesicle uses up its excess area in a
-/// time of sqrt(1 - nu) over the rate of straining; a quarter of it suits all contrasts from 0.1 on.
-double start_step(const Model& s, const Dynamics& d) {
-  const std::vector<AreaVolume> all = sizes(d);
-  const double rate = straining_rate(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, positions(d), all);
+/// A nearly round vesicle uses up its excess area in a time of sqrt(1 - nu) over the rate of straining; a quarter of it
+/// suits all contrasts from 0.1 on.
+double nearly_round_step(const Model& s, const Dynamics& d) {
   constexpr double nearly_round = 0.02;
-  double longest = std::min(longest_step(s.scene), (next_switch(s.scene.flows, d.time) - d.time) / 4);
-  for (const AreaVolume& size : all)
-    if (const double excess = 1 - reduced_volume(size.area, size.volume); excess < nearly_round && !is_sphere(size))
-      longest = std::min(longest, 0.25 * std::sqrt(excess) / rate);
+  double longest = std::numeric_limits<double>::infinity();
+  for (const VesicleDynamics& v : d.vesicles)
+    if (const double excess = 1 - reduced_volume(v.area, v.volume);
+        excess < nearly_round && !is_sphere({v.area, v.volume}))
+      longest = std::min(longest, 0.25 * std::sqrt(excess) / strain(s, d));
   return longest;
 }
 
+/// From the rate at which the membranes move at present.
+double first_adaptive_step(const Model& s, const Dynamics& d) {
+  double rate = fastest_motion(d);
+  if (!(rate > 0)) rate = strain(s, d);  // at rest: by what could move it
+  const double left = s.scene.time.end - d.time;
+  const double length = rate > 0 ? 0.1 * std::sqrt(tolerance_of(s.scene.time)) / rate : left;
+  return std::min({length, left > 0 ? left : length, longest_adaptive_step(s, d)});
+}
+
 }  // namespace
+
+double fastest_motion(const Dynamics& d) {
+  double rate = 0;
+  for (const VesicleDynamics& v : d.vesicles)
+    rate = std::max(rate, motion_rate(v.motion.velocity, std::sqrt(v.area / four_pi)));
+  return rate;
+}
+
+bool any_sphere(const Dynamics& d) {
+  return std::any_of(d.vesicles.begin(), d.vesicles.end(), [](const VesicleDynamics& v) {
+    return is_sphere({v.area, v.volume});
+  });
+}
+
+double longest_adaptive_step(const Model& s, const Dynamics& d) {
+  double longest = std::numeric_limits<double>::infinity();
+  constexpr double steps_a_period = 10;  // fewer could take a flow that oscillates for a steady one
+  for (const FlowParameters& flow : s.scene.flows)
+    if (const double frequency = oscillation(flow); frequency > 0)
+      longest = std::min(longest, 1 / (steps_a_period * frequency));
+  if (any_sphere(d)) longest = std::min(longest, 0.5 / strain(s, d));
+  return longest;
+}
+
+void start_steps(const Model& s, Dynamics& d) {
+  d.control = {};
+  if (steps_adapt(s.scene.time)) {
+    d.calm = 0;
+    d.dt_limit = std::min(first_adaptive_step(s, d), nearly_round_step(s, d));
+    return;
+  }
+  // Shorter ones while the order builds up; where a shape or a pulse of a flow asks for short steps, they stay short.
+  const double build_up = std::ldexp(longest_step(s.scene), -2 * (scheme_of(s.scene).order - 1)),
+               short_ones = std::min((next_switch(s.scene.flows, d.time) - d.time) / 4, nearly_round_step(s, d));
+  d.calm = short_ones < build_up ? 0 : calm_enough;
+  d.dt_limit = std::min(build_up, short_ones);
+}
 
 Dynamics initial_dynamics(const Model& s) {
   if (s.scene.vesicles.empty()) throw std::invalid_argument("the scene has no vesicle");
@@ -96,7 +155,7 @@ Dynamics initial_dynamics(const Model& s) {
     v.energy = measured.h_squared / four_pi;
     v.tail = curvature_tail(s.plans.basis(p, measure_order(p)), g);
     v.high_share = high_degree_share(v.position);
-    start_anew(s, 0, v);
+    start_anew(s, 0, 0, v);
     d.vesicles.push_back(std::move(v));
   }
   if (const Gap gap = smallest_gap(s.plans, positions(d)); gap.crossing)
@@ -105,8 +164,8 @@ Dynamics initial_dynamics(const Model& s) {
     throw std::invalid_argument(
         fmt::format("vesicles {} and {} are {:.3g} apart, less than numerics.gap_floor = {:.3g}", gap.first, gap.second,
                     gap.distance, gap_floor(s, d)));
-  d.dt_limit = start_step(s, d);
-  if (s.scene.time.scheme == "explicit")
+  start_steps(s, d);
+  if (scheme_name(s.scene) == "explicit")
     for (std::size_t k = 0; k < d.vesicles.size(); ++k)
       if (is_sphere({d.vesicles[k].area, d.vesicles[k].volume}))
         throw std::invalid_argument(
@@ -117,15 +176,14 @@ Dynamics initial_dynamics(const Model& s) {
 }
 
 Attempt<Dynamics> begun_anew(const Model& s, Dynamics d) {
-  d.dt_limit = start_step(s, d);
-  d.calm = 0;
   for (VesicleDynamics& v : d.vesicles) {
     v.history = {};
-    start_anew(s, d.time, v);
+    start_anew(s, d.time, d.step, v);
   }
   const Attempt<State> now = evaluate(s, d);
   if (!now) return now.rejection();
   expect(s, d, *now);
+  start_steps(s, d);
   return d;
 }
 

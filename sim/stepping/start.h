@@ -6,14 +6,27 @@
 
 namespace sim {
 
-/// Algorithm 1 runs anew after a time of so many steps of the scene.
-inline constexpr double upsampling_steps = 10;
+/// Algorithm 1 runs anew after so many steps.
+inline constexpr std::int64_t upsampling_steps = 10;
+/// Fixed steps that have become shorter grow again after so many steps without a failure.
+inline constexpr std::int64_t calm_enough = 8;
 
 /// Initial state. Throws std::invalid_argument with one sentence when a vesicle cannot be made.
 Dynamics initial_dynamics(const Model&);
 
-/// Longest step for a scene: time.step, and a twentieth of a period where a flow oscillates.
+/// Step of a scheme of fixed steps, and the longest it takes: a twentieth of a period where a flow oscillates.
+double fixed_step(const Scene&);
 double longest_step(const Scene&);
+
+/// No step that follows a tolerance is longer: a tenth of the period of a flow that oscillates, half of the time in
+/// which flows strain a sphere, whose tension would take too many iterations; infinite otherwise.
+double longest_adaptive_step(const Model&, const Dynamics&);
+/// Rate at which the membrane of a vesicle moves relative to its centre, largest of all.
+double fastest_motion(const Dynamics&);
+bool any_sphere(const Dynamics&);
+
+/// How the first step of a history is taken, from the motions of the present.
+void start_steps(const Model&, Dynamics&);
 
 /// Where a flow has just been switched: what the past says of the future is forgotten, and the next step starts as the
 /// first.

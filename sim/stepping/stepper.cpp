@@ -45,14 +45,13 @@ bool relabelling_due(const std::string& mode, const VesicleDynamics& v) {
   return high_degree_share(v.position) > std::max(growth * v.high_share, negligible);
 }
 
-/// Shifts x to the area and volume of the start, and its past along with it if the scheme says so; the longest shift.
-Attempt<double> correct(const Model& s, const Scheme& scheme, VesicleDynamics& v, const Geometry& g) {
+/// Shifts x to the area and volume of the start; the longest shift.
+Attempt<double> correct(const Model& s, VesicleDynamics& v, const Geometry& g) {
   const Correction c = is_sphere({v.area, v.volume}) ? volume_correction(s.plans, v.position, g, v.area, v.volume)
                                                      : area_volume_correction(s.plans, v.position, g, v.area, v.volume);
   if (!c.converged || c.largest > 0.1 * std::sqrt(v.area / four_pi))
     return Rejection{fmt::format("the area and volume correction failed (shift {:.1e})", c.largest)};
   v.position.values += c.shift.values;
-  if (scheme.past_corrected) move_along(v.history, c.shift);
   return c.largest;
 }
 
@@ -72,8 +71,27 @@ std::optional<Rejection> objection(const NumericsParameters& n, const Geometry& 
 
 namespace {
 
+void lay_labels_anew(VesicleDynamics& v, double time) {
+  v.labels = fresh_labels(v.labels.order);
+  ++v.labels_laid;
+  v.labels_laid_time = time;
+}
+
+/// Labels and dots follow the material while the grid slides over it.
+void slide(const Model& s, const VesicleDynamics& before, double dt, double time, VesicleDynamics& v) {
+  const SlidingPath path = sliding_path(before, dt, v.position, v.sliding);
+  v.labels = slid_labels(s.plans, path, v.labels, -dt, 0);
+  v.tracers = slid_points(path, v.tracers, -dt, 0);
+  if (labels_wound_up(v.labels)) lay_labels_anew(v, time);
+}
+
+struct Finished {
+  VesicleStep record;
+  std::vector<double> errors;  ///< of each order from 1
+};
+
 /// Checks, correction, relabelling and renewal of one vesicle after its scheme has moved it.
-Attempt<VesicleStep> finish_vesicle(const Model& s, VesicleDynamics& v, Moved moved, double time) {
+Attempt<Finished> finish_vesicle(const Model& s, VesicleDynamics& v, Moved moved, const Dynamics& all, double dt) {
   const NumericsParameters& n = s.scene.numerics;
   const Scheme& scheme = scheme_of(s.scene);
   if (!moved.position.values.allFinite()) return Rejection{"a position is not finite"};
@@ -82,59 +100,73 @@ Attempt<VesicleStep> finish_vesicle(const Model& s, VesicleDynamics& v, Moved mo
   const Geometry there = geometry(measured, moved.position);
   if (auto rejection = objection(n, there, n.correction ? v.area : area_volume(measured, v.position).area, v.energy))
     return *rejection;
+  const VesicleDynamics before = v;
   v.position = std::move(moved.position);
   v.motion = std::move(moved.motion);
+  v.sliding = std::move(moved.sliding);
   v.frame = moved.frame;
   v.history = std::move(moved.history);
-  VesicleStep record;
+  Finished finished;
+  VesicleStep& record = finished.record;
   const auto correct_to = [&](const Geometry& g) -> std::optional<Rejection> {
-    const Attempt<double> shift = correct(s, scheme, v, g);
+    const Attempt<double> shift = correct(s, v, g);
     if (!shift) return shift.rejection();
     record.correction = std::max(record.correction, *shift);
     return std::nullopt;
   };
   if (n.correction)
     if (auto rejection = correct_to(there)) return *rejection;
-  if (relabelling_due(n.reparametrization, v) && relabel_vesicle(s, v)) {
+  // The shift of the correction is part of the motion, except that the prediction of a first step knows nothing of it.
+  if (scheme.slides && !before.history.levels.empty())
+    finished.errors = estimated_errors(before, dt, v.position, all.control.order + 1);
+  else
+    finished.errors = {moved.error};
+  const double time = all.time;
+  if (scheme.slides && n.reparametrization == "moving") {
+    slide(s, before, dt, time, v);
+  } else if (relabelling_due(n.reparametrization, v) && relabel_vesicle(s, v)) {
     record.relabelled = 1;
     if (n.correction)
       if (auto rejection = correct_to(measured_geometry(s.plans, v.position))) return *rejection;
-    if (labels_wound_up(v.labels)) {
-      v.labels = fresh_labels(v.labels.order);
-      ++v.labels_laid;
-      v.labels_laid_time = time;
-    }
+    if (labels_wound_up(v.labels)) lay_labels_anew(v, time);
   }
   const Geometry now = measured_geometry(s.plans, v.position);
   const Measures after = measures(now);
   v.energy = after.h_squared / four_pi;
-  if (n.upsampling == 0 && time >= v.upsampling_due) {
+  if (n.upsampling == 0 && all.step >= v.upsampling_due) {
     v.upsampling = upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
-    v.upsampling_due = time + upsampling_steps * s.scene.time.step;
+    v.upsampling_due = all.step + upsampling_steps;
   }
   record.area_error = after.area / v.area - 1;
   record.volume_error = after.volume / v.volume - 1;
   record.energy = v.energy;
   record.upsampling = v.upsampling;
   record.tail = v.tail = curvature_tail(measured, now);
-  return record;
+  return finished;
 }
 
 /// Finishes all vesicles; of several rejections that of the first vesicle counts.
-std::optional<Rejection> finish_vesicles(const Model& s, Dynamics& d, Advance& advance, StepRecord& record) {
+std::optional<Rejection> finish_vesicles(const Model& s, Step& step, Advance& advance, double dt) {
+  Dynamics& d = step.dynamics;
   const int n = int(d.vesicles.size());
-  record.vesicles.resize(n);
+  step.record.vesicles.resize(n);
   std::vector<std::optional<Rejection>> rejections(n);
+  std::vector<std::vector<double>> errors(n);
   parallel_for(n, [&](int k) {
-    const Attempt<VesicleStep> finished =
-        within_domain([&] { return finish_vesicle(s, d.vesicles[k], std::move(advance.vesicles[k]), d.time); });
-    if (finished)
-      record.vesicles[k] = *finished;
-    else
+    const Attempt<Finished> finished =
+        within_domain([&] { return finish_vesicle(s, d.vesicles[k], std::move(advance.vesicles[k]), d, dt); });
+    if (finished) {
+      step.record.vesicles[k] = finished->record;
+      errors[k] = finished->errors;
+    } else {
       rejections[k] = finished.rejection();
+    }
   });
   for (const auto& rejection : rejections)
     if (rejection) return rejection;
+  step.errors = errors[0];
+  for (const auto& of_vesicle : errors)
+    for (std::size_t q = 0; q < step.errors.size(); ++q) step.errors[q] = std::max(step.errors[q], of_vesicle[q]);
   return std::nullopt;
 }
 
@@ -142,24 +174,29 @@ std::optional<Rejection> finish_vesicles(const Model& s, Dynamics& d, Advance& a
 
 Attempt<Step> take_step(const Model& s, const Dynamics& before, double dt) {
   const auto flows = acting_flows(s.scene.flows, before.time, before.time + dt);
-  Attempt<Advance> advance = within_domain([&] { return scheme_of(s.scene).advance({s, before, dt, flows}); });
+  const Scheme& scheme = scheme_of(s.scene);
+  Attempt<Advance> advance = within_domain([&] { return scheme.advance({s, before, dt, flows}); });
   if (!advance) return advance.rejection();
-  Step step{before, {}};
+  Step step{before, {}, {}};
   Dynamics& d = step.dynamics;
   StepRecord& record = step.record;
+  const int levels = int(before.vesicles.front().history.levels.size()) + 1;
+  d.control.order = std::min(steps_adapt(s.scene.time) ? before.control.order : scheme.order, levels);
   d.time = before.time + dt;
-  if (auto rejection = finish_vesicles(s, d, *advance, record)) return *rejection;
+  d.step = before.step + 1;
+  if (auto rejection = finish_vesicles(s, step, *advance, dt)) return *rejection;
   const Gap gap = smallest_gap(s.plans, positions(d));
   if (gap.crossing || gap.distance < gap_floor(s, d))
     return Rejection{fmt::format("vesicles {} and {} {}", gap.first, gap.second,
                                  gap.crossing ? "would cross" : fmt::format("would come within {:.2g}", gap.distance))};
-  d.step = before.step + 1;
   record.step = double(d.step);
   record.dt = dt;
   record.time = d.time;
   record.gap = gap.distance;
   record.iterations = advance->iterations;
   record.residual = advance->residual;
+  record.order = d.control.order;
+  record.error = step.errors[std::min(step.errors.size(), std::size_t(d.control.order)) - 1];
   return step;
 }
 

@@ -10,6 +10,9 @@ namespace sim {
 struct Step {
   Dynamics dynamics;
   StepRecord record;
+  /// Estimated local error of the position, for each order from 1 as far as the past allows, by size_of(); the largest
+  /// of all vesicles.
+  std::vector<double> errors;
 };
 Attempt<Step> take_step(const Model&, const Dynamics&, double dt);
 

@@ -38,10 +38,11 @@ std::vector<std::string> scene_warnings(const Model& s, const Dynamics& d) {
   for (std::size_t k = 0; k < scene.flows.size(); ++k)
     if (scene.flows[k].kind != "none" && scene.time.end > 0 && !moves(scene.flows[k], scene.time.end))
       warnings.push_back(still_flow_warning(scene, k));
-  if (const double longest = longest_step(scene); longest < scene.time.step)
-    warnings.push_back(
-        fmt::format("a flow oscillates {:.3g} times in a step of {:.3g}; steps of {:.3g} are taken, 20 a period",
-                    scene.time.step / (20 * longest), scene.time.step, longest));
+  if (!steps_adapt(scene.time))
+    if (const double step = fixed_step(scene), longest = longest_step(scene); longest < step)
+      warnings.push_back(
+          fmt::format("a flow oscillates {:.3g} times in a step of {:.3g}; steps of {:.3g} are taken, 20 a period",
+                      step / (20 * longest), step, longest));
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
     if (d.vesicles[k].tail > scene.numerics.tail_warning) warnings.push_back(resolution_warning(s, d, k));
   return warnings;

@@ -2,6 +2,7 @@
 
 #include "sim/sphere/norms.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -29,6 +30,99 @@ Matrix tracer_directions() {
     for (const int y : {1, -1})
       for (const int z : {1, -1}) s.row(row++) = Vec3(x, y, z).normalized().transpose();
   return s;
+}
+
+namespace {
+
+/// Where the path is at a time.
+struct Place {
+  Coefficients position, sliding;
+};
+
+Place at(const SlidingPath& path, double time) {
+  Place place;
+  for (std::size_t j = 0; j < path.times.size(); ++j) {
+    double weight = 1;
+    for (std::size_t i = 0; i < path.times.size(); ++i)
+      if (i != j) weight *= (time - path.times[i]) / (path.times[j] - path.times[i]);
+    if (j == 0) {
+      place = {{path.positions[0].order, weight * path.positions[0].values},
+               {path.sliding[0].order, weight * path.sliding[0].values}};
+    } else {
+      place.position.values += weight * path.positions[j].values;
+      place.sliding.values += weight * path.sliding[j].values;
+    }
+  }
+  return place;
+}
+
+/// (a, b) with a x_theta + b x_phi = w in the sense of least squares: the velocity of the grid over the parameters.
+Matrix parameter_velocity(const FirstDerivatives& x, const Matrix& w) {
+  Matrix rates(w.rows(), 2);
+  for (Eigen::Index k = 0; k < w.rows(); ++k) {
+    const double E = x.t.row(k).squaredNorm(), F = x.t.row(k).dot(x.f.row(k)), G = x.f.row(k).squaredNorm(),
+                 determinant = E * G - F * F, along_t = x.t.row(k).dot(w.row(k)), along_f = x.f.row(k).dot(w.row(k));
+    rates(k, 0) = (G * along_t - F * along_f) / determinant;
+    rates(k, 1) = (E * along_f - F * along_t) / determinant;
+  }
+  return rates;
+}
+
+/// y' = f(time, y) over [from, to] in so many steps.
+template <class F>
+Matrix runge_kutta(Matrix y, double from, double to, int steps, F&& f) {
+  const double h = (to - from) / steps;
+  for (int k = 0; k < steps; ++k) {
+    const double t = from + k * h;
+    const Matrix a = f(t, y), b = f(t + h / 2, y + h / 2 * a), c = f(t + h / 2, y + h / 2 * b), d = f(t + h, y + h * c);
+    y += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  return y;
+}
+
+}  // namespace
+
+Coefficients slid_labels(Plans& plans, const SlidingPath& path, const Coefficients& labels, double from, double to) {
+  const int order = labels.order, grid = order + path.positions[0].order;  // products are analysed without aliasing
+  const Basis& of_labels = plans.basis(order, grid);
+  const Basis& of_position = plans.basis(path.positions[0].order, grid);
+  const auto rates_at = [&](double time) {
+    const Place place = at(path, time);
+    return parameter_velocity(of_position.slopes(place.position), of_position.synthesize(place.sliding).values);
+  };
+  const Matrix start = rates_at(from);
+  const double fastest =
+      (start.col(0).cwiseAbs2() + start.col(1).cwiseProduct(of_labels.sin_theta()).cwiseAbs2()).maxCoeff();
+  constexpr double stable = 2;  // of 2.8, for waves of the highest degree
+  const int steps = std::max(1, int(std::ceil(std::sqrt(fastest) * std::abs(to - from) * order / stable)));
+  // The stages fall on the ends and the middles of the steps.
+  std::vector<Matrix> rates{start};
+  for (int k = 1; k <= 2 * steps; ++k) rates.push_back(rates_at(from + (to - from) * k / (2 * steps)));
+  return {order, runge_kutta(labels.values, from, to, steps, [&](double time, const Matrix& values) -> Matrix {
+            const Matrix& w = rates[std::size_t(std::lround((time - from) / (to - from) * 2 * steps))];
+            const FirstDerivatives slopes = of_labels.slopes({order, values});
+            const Matrix change =
+                slopes.t.array().colwise() * w.col(0).array() + slopes.f.array().colwise() * w.col(1).array();
+            return of_labels.analyze(change).values;
+          })};
+}
+
+Matrix slid_points(const SlidingPath& path, const Matrix& parameters, double from, double to) {
+  const auto velocity = [&](double time, const Matrix& points) -> Matrix {
+    const Place place = at(path, time);
+    Matrix s = points.rowwise().normalized();
+    constexpr double near_pole = 1e-6;  // the angles have no directions at a pole itself
+    for (Eigen::Index k = 0; k < s.rows(); ++k)
+      if (std::hypot(s(k, 0), s(k, 1)) < near_pole) s.row(k) = Vec3(near_pole, 0, s(k, 2)).normalized().transpose();
+    const Matrix rates = parameter_velocity(sample_points_first(place.position, s), sample_points(place.sliding, s));
+    Matrix change(s.rows(), 3);
+    for (Eigen::Index k = 0; k < s.rows(); ++k) {
+      const SphereFrame frame = sphere_frame(s.row(k).transpose());
+      change.row(k) = -(rates(k, 0) * frame.e_theta + rates(k, 1) * frame.sin_theta * frame.e_phi).transpose();
+    }
+    return change;
+  };
+  return runge_kutta(parameters, from, to, 1, velocity).rowwise().normalized();
 }
 
 }  // namespace sim

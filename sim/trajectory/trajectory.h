@@ -20,7 +20,7 @@
 namespace sim {
 
 /// Version of the file layout; readers accept this one only.
-inline constexpr int trajectory_format = 1;
+inline constexpr int trajectory_format = 2;
 
 /// Highest order of any field or label in a file.
 inline constexpr int largest_order = 128;
@@ -51,7 +51,7 @@ struct VesicleStep {
 
 /// Diagnostics of one accepted step; steps are numbered from 1 (0: the initial state).
 struct StepRecord {
-  double step = 0, time = 0, dt = 0, iterations = 0, residual = 0, retries = 0, gap = 0;
+  double step = 0, time = 0, dt = 0, iterations = 0, residual = 0, retries = 0, gap = 0, order = 0, error = 0;
   std::vector<VesicleStep> vesicles;
 };
 
@@ -66,6 +66,8 @@ void visit(R& r, V&& v) {
   v("residual", "relative, of the linear solver", r.residual);
   v("retries", "rejected attempts with longer steps", r.retries);
   v("gap", "least distance between two vesicles; infinite for one", r.gap);
+  v("order", "of the scheme in this step", r.order);
+  v("error", "estimated error of position that the step leaves, in area radii", r.error);
 }
 /// ... and of each vesicle.
 template <class R, class V>

@@ -27,7 +27,10 @@ void walk_state(Archive& archive) {
   archive.field("velocity", "coefficients of the membrane velocity", 3, false, &VesicleState::velocity);
   archive.field("position_before", "the previous saved position in this parametrisation", 3, false,
                 &VesicleState::position_before);
-  archive.field("velocity_before", "its velocity", 3, false, &VesicleState::velocity_before);
+  archive.field("velocity_before", "the velocity of its points, sliding included", 3, false,
+                &VesicleState::velocity_before);
+  archive.field("sliding", "coefficients of the velocity of the points along the membrane, relative to it", 3, false,
+                &VesicleState::sliding);
 }
 
 struct Describe {

@@ -90,7 +90,7 @@ TEST_CASE("wrong scenes end with one sentence, status 1 and nothing written", "[
   const Desk desk;
   for (const char* change :
        {"vesicle.oder=3", "vesicle.viscosity_contrast=-1", "vesicle.order=1", "vesicle.reduced_volume=1.5",
-        "time.tolerance=1e-4", "flow.curvature=1", "view.size=[0, 10]", "view.size=[10]"}) {
+        "time.tolerance=1e-7", "flow.curvature=1", "view.size=[0, 10]", "view.size=[10]"}) {
     for (const char* command : {"run", "simulate"}) {
       const Outcome outcome = desk({command, desk.file("s.toml"), "-o", desk.file("x"), "--set", change});
       INFO(command << ' ' << change << ": " << outcome.err);

@@ -141,8 +141,13 @@ TEST_CASE("a key of another kind is refused, a missing one is asked for", "[scen
 }
 
 TEST_CASE("contradictions and reserved keys are refused", "[scene]") {
-  CHECK(error_of(replaced("step = 0.1", "tolerance = 1e-4")) ==
-        "s.toml:9:13: 'tolerance' is reserved: adaptive steps do not exist yet; give time.step instead");
+  CHECK(error_of(replaced("step = 0.1", "step = 0.1\ntolerance = 1e-4")) ==
+        "s.toml:9:8: give 'step', fixed steps, or 'tolerance', steps that follow it, not both");
+  CHECK_THAT(error_of(replaced("step = 0.1", "step = 0.1\nscheme = 'adaptive'")), Contains("chooses its steps"));
+  CHECK_THAT(error_of(replaced("step = 0.1", "scheme = 'bdf3'")), Contains("takes fixed steps; give 'step'"));
+  CHECK_THAT(error_of(replaced("step = 0.1", "tolerance = 1e-3\nscheme = 'explicit'")),
+             Contains("takes fixed steps; give 'step'"));
+  CHECK_THAT(error_of(replaced("step = 0.1", "tolerance = 1e-7")), Contains("'tolerance' must be at least 1e-06"));
   CHECK_THAT(error_of(good + "area = 1\nradius = 2\n"), Contains("s.toml:16:10") && Contains("not both"));
   CHECK_THAT(error_of(good + "axis = [0, 0, 0]\n"), Contains("s.toml:15:8"));
   CHECK_THAT(error_of(replaced("end = 2", "")), Contains("s.toml:7:1") && Contains("needs 'end'"));

@@ -41,7 +41,7 @@ const std::vector<double>& whole() {
   static const std::vector<double> numbers = [] {
     sim::Dynamics d = sim::initial_dynamics(model());
     sim::mark_saved(d, sim::evaluate(model(), d).value());
-    return sim::serialised(sim::take_step(model(), d, scene().time.step).value().dynamics);
+    return sim::serialised(sim::take_step(model(), d, *scene().time.step).value().dynamics);
   }();
   return numbers;
 }
@@ -113,7 +113,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
       });
       for (const sim::PastLevel& level : v.history.levels) fits(level.position);
     }
-    if (d.vesicles.front().position.order == order) sim::take_step(model(), d, scene().time.step);
+    if (d.vesicles.front().position.order == order) sim::take_step(model(), d, *scene().time.step);
   });
   return 0;
 }

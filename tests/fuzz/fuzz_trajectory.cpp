@@ -118,8 +118,8 @@ sim::Coefficients coefficients(int order, int fields) {
 std::vector<std::uint8_t> whole_trajectory() {
   const support::TemporaryFolder folder;
   const auto x = coefficients(2, 3);
-  sim::State state{0, 0, {{x, x, coefficients(2, 1), coefficients(4, 3), sim::Matrix::Ones(2, 3), x, x, 0, 0, 0}}};
-  sim::StepRecord record{1, 0.1, 0.1, 7, 1e-11, 0, 0.5, {sim::VesicleStep{}}};
+  sim::State state{0, 0, {{x, x, coefficients(2, 1), coefficients(4, 3), sim::Matrix::Ones(2, 3), x, x, x, 0, 0, 0}}};
+  sim::StepRecord record{1, 0.1, 0.1, 7, 1e-11, 0, 0.5, 2, 1e-5, {sim::VesicleStep{}}};
   {
     const sim::TrajectoryHeader header{"title = \"small\"\n", "0", "g++", {"a warning"}};
     sim::TrajectoryWriter writer = sim::TrajectoryWriter::create(folder / "t.h5", {1, 2, 4, 2, 4, 4, 40}, header, state,
@@ -204,7 +204,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
         const sim::State state = reader.state(k);
         for (const sim::VesicleState& v : state.vesicles)
           for (const sim::Coefficients* c :
-               {&v.position, &v.velocity, &v.tension, &v.labels, &v.position_before, &v.velocity_before})
+               {&v.position, &v.velocity, &v.tension, &v.labels, &v.position_before, &v.velocity_before, &v.sliding})
             if (c->values.rows() != sim::coefficient_count(c->order) || !c->values.allFinite())
               fuzz::broken("an accepted state is finite and of its orders");
       });

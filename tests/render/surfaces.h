@@ -52,6 +52,7 @@ inline sim::VesicleState vesicle(
   v.velocity = v.position;
   v.position_before = v.position;
   v.velocity_before = v.position;
+  v.sliding = {order, sim::Matrix::Zero(sim::coefficient_count(order), 3)};
   v.labels = coefficients(4, label);
   v.tracers = dots();
   return v;

@@ -40,14 +40,15 @@ std::vector<double> contents(const std::filesystem::path& file) {
     all.push_back(double(s.step));
     all.push_back(s.time);
     for (const VesicleState& v : s.vesicles) {
-      for (const auto* c : {&v.position, &v.velocity, &v.tension, &v.labels, &v.position_before, &v.velocity_before})
+      for (const auto* c :
+           {&v.position, &v.velocity, &v.tension, &v.labels, &v.position_before, &v.velocity_before, &v.sliding})
         add(c->values);
       add(v.tracers);
       all.push_back(double(v.relabelled));
     }
   }
   for (const StepRecord& r : reader.steps()) {
-    for (const double x : {r.step, r.time, r.dt, r.iterations, r.residual}) all.push_back(x);
+    for (const double x : {r.step, r.time, r.dt, r.iterations, r.residual, r.order, r.error}) all.push_back(x);
     for (const VesicleStep& v : r.vesicles) all.insert(all.end(), {v.area_error, v.energy, v.tail, v.correction});
   }
   return all;

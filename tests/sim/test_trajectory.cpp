@@ -37,6 +37,7 @@ State state(int k) {
                    Matrix::Random(14, 3),
                    coefficients(order, 3, seed + 4),
                    coefficients(order, 3, seed + 5),
+                   coefficients(order, 3, seed + 6),
                    k,
                    v,
                    seed};
@@ -48,7 +49,7 @@ State state(int k) {
 }
 
 StepRecord record(int step) {
-  StepRecord r{double(step), 0.01 * step, 0.01, 7, 1e-11, 0, 0.5, {}};
+  StepRecord r{double(step), 0.01 * step, 0.01, 7, 1e-11, 0, 0.5, 3, 1e-6, {}};
   r.vesicles = {{1e-9 * step, 2, 3, 4, 5, 6, 0}, {7, 8, 9, 10, 11, 12, double(step)}};
   return r;
 }
@@ -65,7 +66,7 @@ bool same(const State& a, const State& b) {
     const VesicleState &x = a.vesicles[v], &y = b.vesicles[v];
     equal = same(x.position, y.position) && same(x.velocity, y.velocity) && same(x.tension, y.tension) &&
             same(x.labels, y.labels) && x.tracers == y.tracers && same(x.position_before, y.position_before) &&
-            same(x.velocity_before, y.velocity_before) && x.relabelled == y.relabelled &&
+            same(x.velocity_before, y.velocity_before) && same(x.sliding, y.sliding) && x.relabelled == y.relabelled &&
             x.labels_laid == y.labels_laid && x.labels_laid_time == y.labels_laid_time;
   }
   return equal;

@@ -1,0 +1,41 @@
+#include "sim/measures/statement.h"
+
+#include "sim/membrane/rigid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+double quadrature_error(Plans& plans, const Coefficients& position) {
+  const LayerMatrix dual = plans.layers(position.order, position.order + 1).assemble(position, true).dual;
+  const RigidBody body = rigid_body(position);
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool turns : {false, true}) {
+      RigidMotion motion;
+      (turns ? motion.rotation : motion.translation) = Vec3::Unit(axis);
+      motion.centre = body.centre;
+      const Coefficients r = rigid_velocity(body, motion);
+      largest = std::max(largest, (dual.apply(r).values + r.values / 2).norm() / r.values.norm());
+    }
+  return largest;
+}
+
+ErrorStatement stated_errors(Plans& plans, std::span<const StepRecord> steps, const State& last) {
+  ErrorStatement e;
+  for (const StepRecord& step : steps) {
+    e.time += step.error;
+    e.solve = std::max(e.solve, step.residual);
+    for (const VesicleStep& v : step.vesicles) {
+      e.space = std::max(e.space, v.tail);
+      e.area = std::max(e.area, std::abs(v.area_error));
+      e.volume = std::max(e.volume, std::abs(v.volume_error));
+    }
+  }
+  for (const VesicleState& v : last.vesicles)
+    e.quadrature = std::max(e.quadrature, quadrature_error(plans, v.position));
+  return e;
+}
+
+}  // namespace sim

@@ -1,0 +1,66 @@
+#include "sim/membrane/sliding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+constexpr double smallness = 0.1;      // eps: with 1 the grid follows half as well, with 0.01 the iterations double
+constexpr double tangentiality = 100;  // L: with 10 a part along n is left that shows in the shape
+
+/// Of every row of coefficients of degree p.
+Vector degree_weights(int p) {
+  Vector a(coefficient_count(p));
+  for (int n = 0; n <= p; ++n)
+    for (int m = -n; m <= n; ++m) a[coefficient_index(n, m)] = std::pow(double(n) / p, 4);
+  return a;
+}
+
+double product(const Matrix& a, const Matrix& b) { return a.cwiseProduct(b).sum(); }
+
+}  // namespace
+
+Coefficients sliding_velocity(const SlidingProblem& s, const Coefficients& guess, double tolerance) {
+  const int p = s.basis.order();
+  const Vector a = degree_weights(p);
+  const Matrix& n = s.geometry.n;
+  const auto apply = [&](const Matrix& w) -> Matrix {
+    const Matrix on_grid = s.basis.synthesize({p, w}).values;
+    const Vector along = on_grid.cwiseProduct(n).rowwise().sum();
+    const Matrix normal_part = n.array().colwise() * along.array();
+    return ((a.array() + smallness).matrix().asDiagonal() * w) + tangentiality * s.basis.analyze(normal_part).values;
+  };
+  const RigidMotion rigid = shape_motion(s.body, s.geometry, s.basis.synthesize(s.velocity).values);
+  const Matrix within = s.velocity.values - rigid_velocity(s.body, rigid).values;
+  const double strain = (s.gradient + s.gradient.transpose()).norm() / 2;
+  const double rate = std::max(motion_rate({p, within}, s.radius), strain / 2);
+  const Matrix wanted = (within + rate * s.position.values) / (1 + rate * s.c);
+  const Matrix right = -(a.asDiagonal() * wanted);
+  const Vector inverse = (a.array() + smallness + tangentiality / 3).inverse();
+  Matrix w = guess.values, rest = right - apply(w);
+  Matrix z = inverse.asDiagonal() * rest, direction = z;
+  const double enough = tolerance * tolerance * right.squaredNorm();
+  constexpr int most = 300;
+  double descent = product(rest, z);
+  for (int k = 0; k < most && rest.squaredNorm() > enough; ++k) {
+    const Matrix image = apply(direction);
+    const double step = descent / product(direction, image);
+    w += step * direction;
+    rest -= step * image;
+    z = inverse.asDiagonal() * rest;
+    const double next = product(rest, z);
+    direction = z + next / descent * direction;
+    descent = next;
+  }
+  return {p, w};
+}
+
+double motion_rate(const Coefficients& velocity, double length) {
+  const Eigen::Index rest = velocity.values.rows() - 1;
+  return velocity.values.bottomRows(rest).norm() / std::sqrt(4 * std::numbers::pi) / length;
+}
+
+}  // namespace sim

@@ -1,0 +1,170 @@
+#include "sim/stepping/bdf.h"
+
+#include "sim/membrane/sliding.h"
+#include "sim/stepping/multistep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+constexpr double four_pi = 4 * std::numbers::pi;
+
+std::vector<double> times_of(std::span<const Level> levels) {
+  std::vector<double> times;
+  for (const Level& level : levels) times.push_back(level.time);
+  return times;
+}
+
+/// What is extrapolated for one vesicle.
+struct Outlook {
+  Coefficients behind;  ///< h
+  Coefficients at;      ///< x*
+  Coefficients sliding;
+  Motion motion;  ///< velocity of the frame included
+};
+
+Outlook outlook(std::span<const Level> levels, const Frame& frame, int order, Extrapolation extrapolation,
+                bool euler_predicts) {
+  const std::vector<double> times = times_of(levels);
+  const auto weights = [&](int points) {
+    return lagrange(std::span(times).first(std::min<std::size_t>(points, times.size())), 0);
+  };
+  const int points = order + (extrapolation == Extrapolation::one_more ? 1 : 0);
+  constexpr int most_guessed = 4;  // a cubic: of higher ones the noise of the solves grows
+  Outlook o;
+  o.behind = combined(levels, bdf(times, order).behind, &Level::position);
+  o.at = combined(levels, weights(points), &Level::position);
+  if (levels.size() == 1 && euler_predicts)
+    o.at.values -= times[0] * (levels[0].velocity.values + levels[0].sliding.values);
+  o.sliding = combined(levels, weights(order), &Level::sliding);
+  o.motion.velocity = combined(levels, weights(std::min(order + 1, most_guessed)), &Level::velocity);
+  o.motion.velocity.values += frame_velocity(rigid_body(o.at), frame).values;
+  o.motion.tension = combined_tension(levels, weights(std::min(order + 1, most_guessed)));
+  return o;
+}
+
+/// Residual of the least squares for w, relative: w must be smooth in time.
+double sliding_tolerance(const Scene& scene) {
+  return steps_adapt(scene.time) ? std::min(0.1 * tolerance_of(scene.time), 1e-4) : 1e-6;
+}
+
+}  // namespace
+
+std::vector<Level> carried_levels(const VesicleDynamics& v, const Frame& frame, double later) {
+  std::vector<Level> levels;
+  double time = -later;
+  const auto add = [&](const Coefficients& x, const Motion& motion, const Coefficients& sliding) {
+    const Coefficients rest{x.order, motion.velocity.values - frame_velocity(rigid_body(x), frame).values};
+    levels.push_back(
+        {time, carried(frame, -time, x), turned(frame, -time, rest), turned(frame, -time, sliding), &motion.tension});
+  };
+  add(v.position, v.motion, v.sliding);
+  for (const PastLevel& past : v.history.levels) {
+    time -= past.dt;
+    add(past.position, past.motion, past.sliding);
+  }
+  return levels;
+}
+
+Coefficients combined(std::span<const Level> levels, std::span<const double> weights, Coefficients Level::*member) {
+  Coefficients sum = levels[0].*member;
+  sum.values *= weights[0];
+  for (std::size_t j = 1; j < weights.size(); ++j) sum.values += weights[j] * (levels[j].*member).values;
+  return sum;
+}
+
+Coefficients combined_tension(std::span<const Level> levels, std::span<const double> weights) {
+  Coefficients sum = *levels[0].tension;
+  sum.values *= weights[0];
+  for (std::size_t j = 1; j < weights.size(); ++j) sum.values += weights[j] * levels[j].tension->values;
+  return sum;
+}
+
+std::vector<double> estimated_errors(const VesicleDynamics& before, double dt, const Coefficients& position,
+                                     int most_order) {
+  const std::vector<Level> levels = carried_levels(before, before.frame, dt);
+  if (levels.size() == 1) {
+    const Matrix euler = levels[0].position.values + dt * (levels[0].velocity.values + levels[0].sliding.values);
+    return {size_of(before, position.values - euler) / 2};
+  }
+  const std::vector<double> times = times_of(levels);
+  std::vector<double> errors;
+  for (int k = 1; k <= most_order && k < static_cast<int>(levels.size()); ++k) {
+    const Coefficients expected = combined(levels, lagrange(std::span(times).first(k + 1), 0), &Level::position);
+    errors.push_back(error_share(times, k) * size_of(before, position.values - expected.values));
+  }
+  return errors;
+}
+
+Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapolation extrapolation, int past_levels) {
+  const Model& s = problem.model;
+  const Dynamics& d = problem.before;
+  const std::vector<Frame> moving = frames(d);
+  const bool slides = s.scene.numerics.reparametrization == "moving";
+  const double time = d.time + problem.dt;
+  const int order = std::min<int>(wanted_order, int(d.vesicles.front().history.levels.size()) + 1);
+
+  std::vector<Outlook> expected;
+  std::vector<Coefficients> at, behind;
+  std::vector<Motion> guess;
+  double c = problem.dt;
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
+    const VesicleDynamics& v = d.vesicles[k];
+    const std::vector<Level> levels = carried_levels(v, moving[k], problem.dt);
+    c = bdf(times_of(levels), order).c;
+    // The instantaneous velocity of a sphere strains it: no prediction.
+    const bool euler_predicts = extrapolation == Extrapolation::one_more && !is_sphere({v.area, v.volume});
+    expected.push_back(outlook(levels, moving[k], order, extrapolation, euler_predicts));
+    const Outlook& o = expected.back();
+    at.push_back(o.at);
+    behind.push_back({o.at.order, o.behind.values - o.at.values});
+    if (slides) behind.back().values += c * o.sliding.values;
+    guess.push_back(o.motion);
+  }
+
+  const Suspension suspension = freeze(s, d, at, guess);
+  const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity, behind);
+  Attempt<SuspensionSolve> result = solve(s, suspension, c, r, guess, moving);
+  if (!result) return result.rejection();
+
+  Advance a{{}, result->iterations, result->residual};
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
+    const VesicleDynamics& v = d.vesicles[k];
+    const Membrane& m = suspension.membranes[k];
+    Motion& motion = result->motions[k];
+    const Coefficients u{m.order(), motion.velocity.values - frame_velocity(m.body, moving[k]).values};
+    Moved moved{{m.order(), expected[k].behind.values + c * u.values}, {}, {}, {}, {}, 0};
+    moved.sliding = {m.order(), Matrix::Zero(u.values.rows(), 3)};
+    if (slides) {
+      const double radius = std::sqrt(v.area / four_pi);
+      moved.sliding = sliding_velocity({m.bases.field, m.geometry, m.body, moved.position, u, radius, v.frame.drift, c},
+                                       expected[k].sliding, sliding_tolerance(s.scene));
+      moved.position.values += c * moved.sliding.values;
+    }
+    moved.frame = frame_of(m, motion.velocity, problem.flows, time);
+    moved.motion = std::move(motion);
+    moved.error = estimated_errors(v, problem.dt, moved.position, order).back();
+    moved.history = pushed(v.history, {v.position, v.motion, v.sliding, problem.dt}, past_levels);
+    a.vesicles.push_back(std::move(moved));
+  }
+  return a;
+}
+
+SlidingPath sliding_path(const VesicleDynamics& before, double dt, const Coefficients& position,
+                         const Coefficients& sliding) {
+  SlidingPath path{{0}, {position}, {sliding}};
+  constexpr std::size_t enough = 2;
+  for (const Level& level : carried_levels(before, before.frame, dt)) {
+    if (path.times.size() > enough) break;
+    path.times.push_back(level.time);
+    path.positions.push_back(level.position);
+    path.sliding.push_back(level.sliding);
+  }
+  return path;
+}
+
+}  // namespace sim

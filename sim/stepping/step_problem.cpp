@@ -1,0 +1,103 @@
+#include "sim/stepping/step_problem.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+std::vector<int> upsamplings(const Dynamics& d) {
+  std::vector<int> rates;
+  for (const VesicleDynamics& v : d.vesicles) rates.push_back(v.upsampling);
+  return rates;
+}
+
+}  // namespace
+
+Rejection not_converged(double residual, int iterations) {
+  return {fmt::format("the linear solver stopped at a relative residual of {:.1e} after {} iterations", residual,
+                      iterations)};
+}
+
+Coefficients frame_velocity(const RigidBody& body, const Frame& frame) {
+  return rigid_velocity(body, frame.at(body.centre));
+}
+
+Frame frame_of(const Membrane& m, const Coefficients& velocity, std::span<const FlowParameters> flows, double time) {
+  const Coefficients flow = m.bases.field.analyze(background_velocity(flows, time, m.geometry.x.value));
+  return {shape_motion(m.body, m.geometry, m.bases.field.synthesize(velocity).values), mean_gradient(m.body, flow)};
+}
+
+double size_of(const VesicleDynamics& v, const Matrix& difference) {
+  return difference.norm() / std::sqrt(v.area);  // of an orthonormal basis: the mean is over 4 pi, R0^2 = A/(4 pi)
+}
+
+Model make_model(const Scene& scene, Plans& plans) {
+  Model s{scene, plans, {}};
+  for (const VesicleParameters& v : scene.vesicles)
+    s.materials.push_back({v.viscosity_contrast, v.bending_modulus, v.density_difference});
+  return s;
+}
+
+double gap_floor(const Model& s, const Dynamics& d) {
+  return s.scene.numerics.gap_floor.value_or(default_gap_floor * smallest_radius(sizes(d)));
+}
+
+Suspension freeze(const Model& s, const Dynamics& d, std::span<const Coefficients> frozen,
+                  std::span<const Motion> likely) {
+  const NumericsParameters& n = s.scene.numerics;
+  SuspensionOptions options{n.source_order,
+                            {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
+                            n.repulsion_strength,
+                            n.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes(d)))};
+  std::vector<Coefficients> expected;
+  if (n.implicit_tension)
+    for (const Motion& m : likely) expected.push_back(m.tension);
+  return freeze_suspension(
+      s.plans, s.materials, frozen, upsamplings(d), options, expected,
+      pinned_tensions(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, frozen, sizes(d)));
+}
+
+Attempt<SuspensionSolve> solve(const Model& s, const Suspension& suspension, double c, std::span<const Coefficients> r,
+                               std::span<const Motion> guess, std::span<const Frame> frames) {
+  const Preconditioner kind =
+      s.scene.numerics.preconditioner == "block" ? Preconditioner::block : Preconditioner::spectral;
+  std::vector<RigidMotion> rigid;
+  for (std::size_t k = 0; k < frames.size(); ++k) rigid.push_back(frames[k].at(suspension.membranes[k].body.centre));
+  double tolerance = solve_tolerance(s.scene);
+  constexpr double stiff_sphere = 1e-9;  // the tension that keeps a sphere round hides smaller residuals
+  for (const Membrane& m : suspension.membranes)
+    if (m.pinned && !s.scene.numerics.gmres_tolerance && steps_adapt(s.scene.time))
+      tolerance = std::max(tolerance, stiff_sphere);
+  SuspensionSolve result = solve_suspension(suspension, c, r, guess, tolerance, kind, rigid);
+  if (!result.converged) return not_converged(result.residual, result.iterations);
+  return result;
+}
+
+std::vector<AreaVolume> sizes(const Dynamics& d) {
+  std::vector<AreaVolume> all;
+  for (const VesicleDynamics& v : d.vesicles) all.push_back({v.area, v.volume});
+  return all;
+}
+
+std::vector<Coefficients> positions(const Dynamics& d) {
+  std::vector<Coefficients> x;
+  for (const VesicleDynamics& v : d.vesicles) x.push_back(v.position);
+  return x;
+}
+
+std::vector<Motion> motions(const Dynamics& d) {
+  std::vector<Motion> m;
+  for (const VesicleDynamics& v : d.vesicles) m.push_back(v.motion);
+  return m;
+}
+
+std::vector<Frame> frames(const Dynamics& d) {
+  std::vector<Frame> f;
+  for (const VesicleDynamics& v : d.vesicles) f.push_back(v.frame);
+  return f;
+}
+
+}  // namespace sim
