@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <string_view>
 
 namespace sim::file {
 
@@ -16,24 +15,6 @@ void start_hdf5() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5Eclear2(H5E_DEFAULT);
   H5PLset_loading_state(0);
-}
-
-std::string system_reason() {
-  std::string reason;
-  H5Ewalk2(
-      H5E_DEFAULT, H5E_WALK_UPWARD,
-      [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {
-        constexpr std::string_view before = "error message = '";
-        const std::string_view words(error->desc ? error->desc : "");
-        if (const std::size_t at = words.find(before); at != std::string_view::npos) {
-          const std::string_view rest = words.substr(at + before.size());
-          *static_cast<std::string*>(text) = rest.substr(0, rest.find('\''));
-        }
-        return 0;
-      },
-      &reason);
-  H5Eclear2(H5E_DEFAULT);
-  return reason;
 }
 
 hid_t text_type(std::uint64_t bytes) {

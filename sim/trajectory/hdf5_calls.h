@@ -34,7 +34,7 @@ class Handle {
 };
 
 /// Identifiers of a file that is being made. Every call is checked, the closing ones too. Where one failed, nothing
-/// more is asked of HDF5 about that file, not even to close it: libhdf5 crashes over what a failed write has left half
+/// more is asked of HDF5 about that file, not even to close it: libhdf5 crashes over what a failed call has left half
 /// done.
 class Making {
  public:
@@ -54,9 +54,6 @@ class Making {
 /// Before each use of HDF5. It says nothing by itself, loads no plugin that a file asks for, and leaves what is open
 /// alone when the program ends.
 void start_hdf5();
-
-/// What the system said to HDF5 when it failed, "No space left on device"; empty: nothing.
-std::string system_reason();
 
 hid_t text_type(std::uint64_t bytes);  ///< of a fixed length, padded with zeros
 bool is_text(hid_t type);
