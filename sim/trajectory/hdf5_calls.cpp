@@ -1,7 +1,6 @@
 #include "sim/trajectory/hdf5_calls.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace sim::file {
 
@@ -36,22 +35,6 @@ void write_attribute(hid_t object, const char* name, hid_t type, const void* val
   made.close();
 }
 
-/// The one way in which HDF5 copies anything out of a file: an attribute of one value. Type, extent and size are what
-/// the caller expects before a byte is copied. A type below 0 stands for a text of a fixed length.
-std::string read_attribute(hid_t object, const char* name, hid_t expected, std::uint64_t largest) {
-  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, name);
-  const Handle type(H5Aget_type(attribute), H5Tclose, name);
-  const Handle space(H5Aget_space(attribute), H5Sclose, name);
-  const std::uint64_t size = H5Tget_size(type);
-  if (H5Sget_simple_extent_type(space) != H5S_SCALAR ||
-      !(expected < 0 ? is_text(type) : H5Tequal(type, expected) > 0) || size == 0 || size > largest ||
-      H5Aget_storage_size(attribute) != size)
-    throw Refused(name);
-  std::string bytes(size, '\0');
-  if (H5Aread(attribute, type, bytes.data()) < 0) throw Refused(name);
-  return bytes;
-}
-
 }  // namespace
 
 void write_text(hid_t object, const char* name, const std::string& text) {
@@ -62,20 +45,6 @@ void write_text(hid_t object, const char* name, const std::string& text) {
 
 void write_number(hid_t object, const char* name, std::int64_t value) {
   write_attribute(object, name, H5T_STD_I64LE, &value);
-}
-
-std::string read_text(hid_t object, const char* name, std::uint64_t file_bytes) {
-  constexpr std::uint64_t largest_text = 16 << 20;  // more than any program writes
-  std::string text = read_attribute(object, name, H5I_INVALID_HID, std::min(largest_text, file_bytes));
-  text.resize(std::strlen(text.c_str()));
-  return text;
-}
-
-std::int64_t read_number(hid_t object, const char* name) {
-  std::int64_t value = 0;
-  const std::string bytes = read_attribute(object, name, H5T_STD_I64LE, sizeof value);
-  std::memcpy(&value, bytes.data(), sizeof value);
-  return value;
 }
 
 }  // namespace sim::file

@@ -58,11 +58,8 @@ void start_hdf5();
 hid_t text_type(std::uint64_t bytes);  ///< of a fixed length, padded with zeros
 bool is_text(hid_t type);
 
+/// Attributes of one value.
 void write_text(hid_t object, const char* name, const std::string& text);
 void write_number(hid_t object, const char* name, std::int64_t value);
-
-/// Attributes of one value. `file_bytes`: no text can be longer than its file.
-std::string read_text(hid_t object, const char* name, std::uint64_t file_bytes);
-std::int64_t read_number(hid_t object, const char* name);
 
 }  // namespace sim::file

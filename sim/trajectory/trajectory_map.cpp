@@ -1,3 +1,5 @@
+#include "sim/trajectory/attributes.h"
+#include "sim/trajectory/file_blocks.h"
 #include "sim/trajectory/hdf5_calls.h"
 #include "sim/trajectory/trajectory_datasets.h"
 #include "sim/trajectory/trajectory_file.h"
@@ -80,18 +82,18 @@ void require_separate(const std::map<std::string, Place, std::less<>>& datasets)
   }
 }
 
-Map read_map(const Descriptor& file, hid_t h5, std::uint64_t file_bytes) {
+Map read_map(const Descriptor& file, hid_t h5, const Attributes& attributes, std::uint64_t file_bytes) {
   Map map;
-  map.header.program = read_text(h5, "program", file_bytes);
-  map.header.build = read_text(h5, "build", file_bytes);
-  const std::string warnings = read_text(h5, "warnings", file_bytes);
+  map.header.program = attributes.text("program");
+  map.header.build = attributes.text("build");
+  const std::string warnings = attributes.text("warnings");
   for (std::size_t from = 0; from < warnings.size();) {
     const std::size_t to = std::min(warnings.find('\n', from), warnings.size());
     map.header.warnings.push_back(warnings.substr(from, to - from));
     from = to + 1;
   }
   visit_layout(map.layout, [&](const char* name, auto& value, std::int64_t least, std::int64_t largest) {
-    const std::int64_t number = read_number(h5, name);
+    const std::int64_t number = attributes.number(name);
     if (number < least || number > largest) throw Refused(name);
     value = static_cast<std::remove_reference_t<decltype(value)>>(number);
   });
@@ -102,10 +104,26 @@ Map read_map(const Descriptor& file, hid_t h5, std::uint64_t file_bytes) {
   map.header.scene.resize(place.row_bytes);
   file.read(place.offset, map.header.scene.data(), place.row_bytes);
   if (map.header.scene == std::string(1, '\0')) map.header.scene.clear();
-  if (static_cast<std::int64_t>(scene_checksum(map.header.scene)) != read_number(h5, "scene_checksum"))
+  if (static_cast<std::int64_t>(scene_checksum(map.header.scene)) != attributes.number("scene_checksum"))
     throw std::runtime_error(
         fmt::format("trajectory '{}' is damaged: its scene does not fit its checksum", file.path().string()));
   return map;
+}
+
+std::string foreign(const std::string& path) {
+  return fmt::format("'{}' is an HDF5 file but not a Tanktread trajectory", path);
+}
+
+/// What cannot be read is damage only in a trajectory.
+Attributes attributes_of(const Descriptor& file) {
+  try {
+    return Attributes(file);
+  } catch (const Unread&) {
+    throw;
+  } catch (const Refused&) {
+    if (holds_mark(file.path())) throw;
+    throw std::runtime_error(foreign(file.path().string()));
+  }
 }
 
 /// The length that the head of an HDF5 file gives to it; 0: it gives none.
@@ -144,12 +162,17 @@ std::optional<Map> map(const Descriptor& file) {
     void* descriptor = nullptr;
     if (H5Fget_vfd_handle(h5, H5P_DEFAULT, &descriptor) < 0 || !descriptor) throw Refused("the file");
     if (!file.same_file(*static_cast<int*>(descriptor))) return std::nullopt;
-    if (H5Aexists(h5, "content") <= 0 || H5Aexists(h5, "format") <= 0 || read_text(h5, "content", size) != content)
-      throw std::runtime_error(fmt::format("'{}' is an HDF5 file but not a Tanktread trajectory", path));
-    if (const std::int64_t format = read_number(h5, "format"); format != trajectory_format)
+    const Attributes attributes = attributes_of(file);
+    if (!attributes.has("content") || !attributes.has("format") || attributes.text("content") != content)
+      throw std::runtime_error(foreign(path));
+    if (const std::int64_t format = attributes.number("format"); format != trajectory_format)
       throw std::runtime_error(
           fmt::format("trajectory '{}' has format {}; this program reads format {}", path, format, trajectory_format));
-    return read_map(file, h5, size);
+    return read_map(file, h5, attributes, size);
+  } catch (const Unread& unread) {
+    throw std::runtime_error(fmt::format(
+        "HDF5 file '{}' is stored in a way that this program does not read: {}; 'h5repack' can make a plain copy", path,
+        unread.what()));
   } catch (const Refused& refused) {
     throw std::runtime_error(
         fmt::format("trajectory '{}' is damaged: {} is not what it must be", path, refused.what()));

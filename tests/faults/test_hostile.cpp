@@ -1,6 +1,7 @@
 // Files that somebody else has made or changed: each is refused in one sentence, or read for what it is.
 #include "desk.h"
 #include "sim/stepping/dynamics.h"
+#include "sim/trajectory/attributes.h"
 #include "sim/trajectory/trajectory_file.h"
 #include "tests/support/hostile_hdf5.h"
 
@@ -153,6 +154,62 @@ TEST_CASE("an array in the place of a number is told as damage by every command"
     H5Sclose(space);
   });
   check_refused_everywhere(desk, "array.h5", "is damaged");
+}
+
+namespace {
+
+void set_text(hid_t file, const char* name, std::size_t bytes) {
+  const hid_t type = support::text_of_bytes(bytes), space = H5Screate(H5S_SCALAR);
+  support::replace_attribute(file, name, type, space);
+  H5Tclose(type);
+  H5Sclose(space);
+}
+
+/// The original as earlier versions would have stored it: HDF5 moves all attributes into a heap when one is too large
+/// for a header. That one, and one of 5000 bytes, lie outside the heap, which is of several blocks.
+void make_dense(const fs::path& path) {
+  copy_original(path);
+  edit(path, [](hid_t file) {
+    set_text(file, "remarks", 70000);
+    set_text(file, "build", 5000);
+    set_text(file, "warnings", 3000);
+    CHECK(support::bytes_of_attribute_heap(file) > 0);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("attributes in a heap of their own, as earlier versions left them, are read as well", "[hostile]") {
+  const support::TemporaryFolder folder;
+  const fs::path path = folder / "t.h5";
+  const auto is_dense = [](const fs::path& file) {
+    return sim::file::Attributes(sim::file::Descriptor(file, false)).dense();
+  };
+  const fs::path native = fs::path(TANKTREAD_CORPUS) / "trajectory" / "native.h5";  // of version 0.1.0
+  CHECK(is_dense(native));
+  CHECK(sim::TrajectoryReader(native).header().warnings.size() == 1);
+  make_dense(path);
+  CHECK(is_dense(path));
+  const sim::TrajectoryHeader before = sim::TrajectoryReader(original().file("t.h5")).header();
+  const sim::TrajectoryReader reader(path);
+  CHECK(reader.header().build == std::string(5000, 'A'));
+  CHECK(reader.header().warnings == std::vector<std::string>{std::string(3000, 'A')});
+  CHECK(reader.header().program == before.program);
+  CHECK(reader.header().scene == before.scene);
+  CHECK(reader.damaged().empty());
+}
+
+TEST_CASE("an index of attributes that this program does not read is told with the way out", "[hostile]") {
+  const Desk desk(scene("1"));
+  copy_original(desk.file("t.h5"));
+  edit(desk.file("t.h5"), [](hid_t file) {
+    const hid_t space = H5Screate(H5S_SCALAR), long_text = support::text_of_bytes(70000);
+    support::replace_attribute(file, "remarks", long_text, space);
+    for (int k = 0; k < 100; ++k) support::replace_attribute(file, fmt::format("remark {}", k), H5T_STD_I64LE, space);
+    H5Tclose(long_text);
+    H5Sclose(space);
+  });
+  check_refused_everywhere(desk, "t.h5", "'h5repack' can make a plain copy");
 }
 
 TEST_CASE("datasets that lie elsewhere, and links that lead elsewhere, are refused and not followed", "[hostile]") {

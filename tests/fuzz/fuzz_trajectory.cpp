@@ -2,6 +2,7 @@
 // after each mutation, or hardly any would get beyond them; those of states, steps and resume records for half of the
 // inputs. Besides bytes, types, extents, storage and links of a whole trajectory are changed by HDF5 itself.
 #include "sim/stepping/dynamics.h"
+#include "sim/trajectory/file_blocks.h"
 #include "sim/trajectory/trajectory_file.h"
 #include "support.h"
 #include "tests/support/hostile_hdf5.h"
@@ -19,30 +20,8 @@ namespace {
 /// Links lead to a pipe that nobody writes into: a reader that opens it hangs.
 const std::string pipe_path = "/tmp/tanktread-fuzz-pipe";
 
-/// Bob Jenkins' lookup3, with which HDF5 guards its metadata.
-std::uint32_t metadata_checksum(const std::uint8_t* k, std::size_t length) {
-  std::uint32_t a = 0xdeadbeef + static_cast<std::uint32_t>(length), b = a, c = a;
-  const auto turn = [](std::uint32_t x, int by) { return x << by | x >> (32 - by); };
-  const auto word = [&](std::size_t at) {
-    std::uint32_t w = 0;
-    for (std::size_t i = 0; i < 4 && at + i < length; ++i) w |= std::uint32_t{k[i + at]} << (8 * i);
-    return w;
-  };
-  std::size_t at = 0;
-  for (; length - at > 12; at += 12) {
-    a += word(at), b += word(at + 4), c += word(at + 8);
-    a -= c, a ^= turn(c, 4), c += b;
-    b -= a, b ^= turn(a, 6), a += c;
-    c -= b, c ^= turn(b, 8), b += a;
-    a -= c, a ^= turn(c, 16), c += b;
-    b -= a, b ^= turn(a, 19), a += c;
-    c -= b, c ^= turn(b, 4), b += a;
-  }
-  if (at == length) return c;
-  a += word(at), b += word(at + 4), c += word(at + 8);
-  c ^= b, c -= turn(b, 14), a ^= c, a -= turn(c, 11), b ^= a, b -= turn(a, 25), c ^= b, c -= turn(b, 16);
-  a ^= c, a -= turn(c, 4), b ^= a, b -= turn(a, 14), c ^= b, c -= turn(b, 24);
-  return c;
+std::uint32_t metadata_checksum(const std::uint8_t* bytes, std::size_t length) {
+  return sim::file::metadata_checksum({reinterpret_cast<const char*>(bytes), length});
 }
 
 void seal(std::vector<std::uint8_t>& file, std::size_t from, std::size_t length) {

@@ -137,6 +137,18 @@ inline std::vector<std::string> names_of_attributes(hid_t file) {
   return names;
 }
 
+/// Of the heap outside the header of an object in which its attributes are; 0: they are in the header.
+inline hsize_t bytes_of_attribute_heap(hid_t object) {
+#if H5_VERSION_GE(1, 12, 0)
+  H5O_native_info_t info{};
+  H5Oget_native_info(object, &info, H5O_NATIVE_INFO_META_SIZE);
+#else
+  H5O_info_t info{};
+  H5Oget_info2(object, &info, H5O_INFO_META_SIZE);
+#endif
+  return info.meta_size.attr.heap_size;
+}
+
 inline std::vector<std::string> names_of_datasets() {
   return {"count",   "steps/count", "notes_count", "resume_head", "checksum",  "steps/checksum", "scene",
           "notes",   "resume",      "step",        "time",        "order",     "label_order",    "tracers",
