@@ -40,6 +40,17 @@ void check_space(const std::filesystem::path& path, Wide bytes) {
                                          path.string(), needed * 1e-9, available * 1e-9, folder.string()));
 }
 
+/// One a line. A compact attribute has less than 64 KiB; of a thousand vesicles, what the first ones say will do.
+std::string lines(const std::vector<std::string>& all) {
+  std::string text;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (text.size() + all[k].size() > most_warning_bytes)
+      return text + fmt::format("{}and {} more", k > 0 ? "\n" : "", all.size() - k);
+    text += (k > 0 ? "\n" : "") + all[k];
+  }
+  return text;
+}
+
 /// Memory that HDF5 takes for a file. Kept where HDF5 failed: it may still know it.
 class Image {
  public:
@@ -88,6 +99,8 @@ Start start_of_file(const std::vector<Dataset>& all, const TrajectoryLayout& lay
   Making made;
   const hid_t creation = made(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   Making::check(H5Pset_obj_track_times(creation, false));  // or the root group carries the time of day
+  // All attributes in the header of the root, which is guarded by a checksum, none in an index of their own.
+  Making::check(H5Pset_attr_phase_change(creation, 65535, 65535));
   const hid_t access = made(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   Image image;
   image.offer(access);
@@ -101,9 +114,7 @@ Start start_of_file(const std::vector<Dataset>& all, const TrajectoryLayout& lay
   write_text(h5, "content", std::string(content));
   write_text(h5, "program", header.program);
   write_text(h5, "build", header.build);
-  std::string warnings;
-  for (const std::string& w : header.warnings) warnings += (warnings.empty() ? "" : "\n") + w;
-  write_text(h5, "warnings", warnings);
+  write_text(h5, "warnings", lines(header.warnings));
   visit_layout(layout,
                [&](const char* name, auto value, std::int64_t, std::int64_t) { write_number(h5, name, value); });
   write_number(h5, "scene_checksum", static_cast<std::int64_t>(scene_checksum(header.scene)));

@@ -14,6 +14,7 @@ namespace sim::file {
 inline constexpr std::string_view content = "tanktread trajectory";  ///< what the file says that it is
 inline constexpr std::string_view signature = "\211HDF\r\n\032\n";   ///< with which an HDF5 file begins
 inline constexpr std::uint64_t metadata_bytes = 65536;               ///< of HDF5, at the head of the file
+inline constexpr std::uint64_t most_warning_bytes = 24 << 10;        ///< of all that are kept
 inline constexpr std::uint64_t note_bytes = 256, note_rows = 64;
 
 enum class Kind { real, integer, text };

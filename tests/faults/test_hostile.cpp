@@ -2,6 +2,7 @@
 #include "desk.h"
 #include "sim/stepping/dynamics.h"
 #include "sim/trajectory/attributes.h"
+#include "sim/trajectory/trajectory_datasets.h"
 #include "sim/trajectory/trajectory_file.h"
 #include "tests/support/hostile_hdf5.h"
 
@@ -156,6 +157,27 @@ TEST_CASE("an array in the place of a number is told as damage by every command"
   check_refused_everywhere(desk, "array.h5", "is damaged");
 }
 
+TEST_CASE("a trajectory is written with all its attributes in the header of the root, however many warnings",
+          "[hostile]") {
+  const Desk desk(scene("1"));
+  copy_original(desk.file("t.h5"));
+  const sim::TrajectoryReader one(desk.file("t.h5"));
+  sim::TrajectoryHeader header = one.header();
+  for (int k = 0; k < 2000; ++k) header.warnings.push_back(fmt::format("vesicle {} is a little too coarse", k));
+  sim::TrajectoryWriter::create(desk.file("many.h5"), one.layout(), header, one.state(0), one.resume_payload());
+  for (const char* name : {"t.h5", "many.h5"}) {
+    edit(desk.file(name), [](hid_t file) { CHECK(support::bytes_of_attribute_heap(file) == 0); });
+    const sim::file::Descriptor file(desk.file(name), false);
+    CHECK_FALSE(sim::file::Attributes(file).dense());
+    const std::string bytes = support::read_file(desk / name);
+    for (const char* part : {"OHDR", "OCHK", "FRHP", "BTHD"}) CHECK(bytes.rfind(part) + 4 < sim::file::metadata_bytes);
+  }
+  const std::vector<std::string> kept = sim::TrajectoryReader(desk.file("many.h5")).header().warnings;
+  REQUIRE(kept.size() > 100);
+  CHECK(kept.front() == header.warnings.front());
+  CHECK(kept.back() == fmt::format("and {} more", header.warnings.size() - (kept.size() - 1)));
+}
+
 namespace {
 
 void set_text(hid_t file, const char* name, std::size_t bytes) {
@@ -197,6 +219,29 @@ TEST_CASE("attributes in a heap of their own, as earlier versions left them, are
   CHECK(reader.header().program == before.program);
   CHECK(reader.header().scene == before.scene);
   CHECK(reader.damaged().empty());
+}
+
+TEST_CASE("no flipped bit in a heap of attributes and its index passes unnoticed", "[hostile]") {
+  const support::TemporaryFolder folder;
+  const fs::path path = folder / "t.h5";
+  make_dense(path);
+  const std::string whole = support::read_file(path);
+  const std::size_t added = support::read_file(original() / "t.h5").size();
+  int flips = 0;
+  for (const char* part : {"FRHP", "FHIB", "FHDB", "BTHD", "BTLF"}) {
+    INFO(part);
+    REQUIRE(whole.find(part, added) != whole.npos);
+    for (std::size_t from = added; (from = whole.find(part, from)) != whole.npos; ++from)
+      for (std::size_t at = from; at < from + 38; ++at, ++flips) {
+        std::string damaged = whole;
+        damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+        support::write_file(path, damaged);
+        INFO("byte " << at - from);
+        const std::string message = message_of([&] { sim::TrajectoryReader r(path); });
+        CHECK_THAT(message, Contains("t.h5"));
+      }
+  }
+  CHECK(flips > 200);
 }
 
 TEST_CASE("an index of attributes that this program does not read is told with the way out", "[hostile]") {
