@@ -15,7 +15,7 @@ void require(bool fits) {
   if (!fits) throw Refused(what);
 }
 
-/// Records of a B-tree of one leaf, which holds the attributes of any trajectory.
+/// Records of a B-tree of one leaf, as the attributes of any trajectory are, or of one node with leaves.
 std::vector<std::string> records(Blocks& blocks, std::uint64_t address, std::uint64_t type,
                                  std::uint64_t record_bytes) {
   const std::string head = blocks.sealed(address, 34);
@@ -23,16 +23,36 @@ std::vector<std::string> records(Blocks& blocks, std::uint64_t address, std::uin
   require(c.bytes(4) == "BTHD" && c.number(1) == 0 && c.number(1) == type);
   const std::uint64_t node_bytes = c.number(4);
   require(c.number(2) == record_bytes);
-  if (c.number(2) != 0) throw Unread(what);  // its depth
+  const std::uint64_t depth = c.number(2);
+  if (depth > 1) throw Unread(what);
   c.skip(2);
-  const std::uint64_t leaf = c.number(8), count = c.number(2);
+  const std::uint64_t root = c.number(8), count = c.number(2);
   std::vector<std::string> all;
   if (count == 0) return all;
-  require(10 + count * record_bytes <= node_bytes);
-  const std::string node = blocks.sealed(leaf, 6 + count * record_bytes);
-  Cursor n(node);
-  require(n.bytes(4) == "BTLF" && n.number(1) == 0 && n.number(1) == type);
-  for (std::uint64_t k = 0; k < count; ++k) all.emplace_back(n.bytes(record_bytes));
+  /// The records of a node; what follows them is left.
+  const auto take = [&](Cursor& node, std::string_view mark, std::uint64_t number) {
+    require(node.bytes(4) == mark && node.number(1) == 0 && node.number(1) == type);
+    for (std::uint64_t k = 0; k < number; ++k) all.emplace_back(node.bytes(record_bytes));
+  };
+  const auto leaf = [&](std::uint64_t at, std::uint64_t number) {
+    const std::string bytes = blocks.sealed(at, 6 + number * record_bytes);
+    Cursor node(bytes);
+    take(node, "BTLF", number);
+  };
+  require(node_bytes > 10 + record_bytes);
+  if (depth == 0) {
+    leaf(root, count);
+    return all;
+  }
+  const std::uint64_t in_a_leaf = (node_bytes - 10) / record_bytes,
+                      count_bytes = static_cast<std::uint64_t>(std::bit_width(in_a_leaf) - 1) / 8 + 1;
+  const std::string bytes = blocks.sealed(root, 6 + count * record_bytes + (count + 1) * (8 + count_bytes));
+  Cursor node(bytes);
+  take(node, "BTIN", count);
+  for (std::uint64_t k = 0; k <= count; ++k) {
+    const std::uint64_t at = node.number(8);
+    leaf(at, node.number(count_bytes));
+  }
   return all;
 }
 

@@ -8,8 +8,8 @@
 
 namespace sim::file {
 
-/// The attributes that the index at one address names in the heap at another, as messages. Unread: an index of several
-/// levels, a heap of indirect rows, which some thirty attributes need.
+/// The attributes that the index at one address names in the heap at another, as messages. Unread: an index of more
+/// than two levels, a heap of indirect rows, which some hundred attributes need.
 std::vector<std::string> dense_attributes(Blocks&, std::uint64_t heap, std::uint64_t index);
 
 }  // namespace sim::file
