@@ -116,12 +116,12 @@ bool is_marked_picture(const fs::path& path, bool damaged) {
   }
 }
 
-}  // namespace
-
-std::uint32_t checksum(std::string_view bytes) {
+std::uint32_t crc_of(std::string_view bytes) {
   return static_cast<std::uint32_t>(
       ::crc32_z(::crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
+
+}  // namespace
 
 OwnedFiles::OwnedFiles(fs::path folder) : folder_(std::move(folder)) {
   if (folder_.empty()) folder_ = ".";
@@ -302,7 +302,7 @@ sim::Draft OwnedFiles::prepare(const std::string& name, std::string_view bytes) 
   try {
     sim::Draft draft(folder_ / name);
     draft.write(bytes);
-    add(name, {checksum(bytes), bytes.size()});
+    add(name, {crc_of(bytes), bytes.size()});
     return draft;
   } catch (const std::system_error& error) {
     fail(folder_ / name, error.code().value());

@@ -18,8 +18,6 @@
 
 namespace app {
 
-std::uint32_t checksum(std::string_view bytes);
-
 class OwnedFiles {
  public:
   /// Reads the list, and changes nothing. Names are relative to the folder, "frames/000000.png".
