@@ -16,7 +16,7 @@ namespace app {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Contrasts that occur, in order.
 std::vector<double> contrasts_of(const std::vector<SteadyPoint>& points) {

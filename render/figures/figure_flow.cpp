@@ -73,9 +73,9 @@ void draw_head(const Pen& pen, const Eigen::Vector2d& at, const Eigen::Vector2d&
 }
 
 /// Sections of one vesicle in the plane's own coordinates, in units of the length of the figure.
-using Sections = std::vector<std::vector<ClosedCurve>>;
-Sections sections_of(const sim::State& state, const CutPlane& plane, double length) {
-  Sections sections;
+using Contours = std::vector<std::vector<ClosedCurve>>;
+Contours sections_of(const sim::State& state, const CutPlane& plane, double length) {
+  Contours sections;
   for (const sim::VesicleState& vesicle : state.vesicles) {
     sections.push_back(cut(vesicle.position, plane));
     for (ClosedCurve& curve : sections.back()) curve.points /= length;
@@ -159,7 +159,7 @@ struct FlowDrawing {
   double spacing = 0;                  ///< of the lines, likewise
   std::array<Range, 2> cells;          ///< covered by the image, likewise
   std::shared_ptr<const Image> image;  ///< of the speeds; null: none
-  Sections sections;
+  Contours sections;
   std::string speed_label, title, frame;
 };
 

@@ -48,11 +48,11 @@ Egl load_egl(const LibraryNames& names) {
   return egl;
 }
 
-struct Object {
+struct EglObject {
   Egl egl;
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
-  ~Object() {
+  ~EglObject() {
     if (context == EGL_NO_CONTEXT) return;
     egl.MakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     egl.DestroyContext(display, context);
@@ -60,13 +60,13 @@ struct Object {
 };
 
 bool make_current(void* o) {
-  const auto* self = static_cast<Object*>(o);
+  const auto* self = static_cast<EglObject*>(o);
   self->egl.BindAPI(EGL_OPENGL_API);
   return self->egl.MakeCurrent(self->display, EGL_NO_SURFACE, EGL_NO_SURFACE, self->context) == EGL_TRUE;
 }
 
 /// Empty when the display does not give a context.
-std::shared_ptr<Object> try_display(const Egl& egl, EGLDisplay display) {
+std::shared_ptr<EglObject> try_display(const Egl& egl, EGLDisplay display) {
   EGLint major = 0, minor = 0;
   if (display == EGL_NO_DISPLAY || !egl.Initialize(display, &major, &minor) || !egl.BindAPI(EGL_OPENGL_API)) return {};
   const std::array<EGLint, 5> config_wanted{EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
@@ -77,7 +77,7 @@ std::shared_ptr<Object> try_display(const Egl& egl, EGLDisplay display) {
   const std::array<EGLint, 7> wanted{
       EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-  auto object = std::make_shared<Object>();
+  auto object = std::make_shared<EglObject>();
   object->egl = egl;
   object->display = display;
   object->context = egl.CreateContext(display, config, EGL_NO_CONTEXT, wanted.data());
@@ -85,7 +85,7 @@ std::shared_ptr<Object> try_display(const Egl& egl, EGLDisplay display) {
   return object;
 }
 
-GlContext::BackEnd back_end(std::shared_ptr<Object> object, std::string name) {
+GlContext::BackEnd back_end(std::shared_ptr<EglObject> object, std::string name) {
   const auto look_up = reinterpret_cast<GlFunction (*)(const char*)>(object->egl.GetProcAddress);
   return {std::move(object), make_current, look_up, std::move(name)};
 }

@@ -40,11 +40,11 @@ Library load_osmesa(const LibraryNames& names) {
   return l;
 }
 
-struct Object {
+struct OsmesaObject {
   Library functions;
   OsmesaContext context = nullptr;
   std::array<unsigned char, side * side * 4> buffer{};
-  ~Object() {
+  ~OsmesaObject() {
     if (context) functions.destroy(context);
   }
 };
@@ -52,7 +52,7 @@ struct Object {
 }  // namespace
 
 GlContext::BackEnd open_osmesa(const LibraryNames& names) {
-  auto object = std::make_shared<Object>();
+  auto object = std::make_shared<OsmesaObject>();
   object->functions = load_osmesa(names);
   const std::array<int, 13> wanted{osmesa_format,
                                    rgba,
@@ -70,7 +70,7 @@ GlContext::BackEnd open_osmesa(const LibraryNames& names) {
   object->context = object->functions.create(wanted.data(), nullptr);
   if (!object->context) throw GlUnavailable("OSMesa cannot make an OpenGL 3.3 core context");
   const auto make_current = [](void* o) {
-    auto* self = static_cast<Object*>(o);
+    auto* self = static_cast<OsmesaObject*>(o);
     return self->functions.make_current(self->context, self->buffer.data(), GL_UNSIGNED_BYTE, side, side) != 0;
   };
   if (!make_current(object.get())) throw GlUnavailable("OSMesa cannot make its context current");

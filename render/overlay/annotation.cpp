@@ -10,10 +10,10 @@
 namespace render {
 namespace {
 
-struct Sizes {
+struct AnnotationSizes {
   double unit, margin, text, line;  // px
 };
-Sizes sizes_of(const Image& image) {
+AnnotationSizes annotation_sizes(const Image& image) {
   const OverlaySizes sizes = overlay_sizes(image.height);
   return {.unit = sizes.unit, .margin = sizes.margin, .text = sizes.small, .line = std::max(2.2 * sizes.unit, 1.0)};
 }
@@ -55,7 +55,7 @@ void seen_end_on(cairo_t* cairo, glm::dvec2 at, bool toward, double line) {
 }  // namespace
 
 void draw_triad(Image& image, const Font& font, const Camera& camera) {
-  const Sizes s = sizes_of(image);
+  const AnnotationSizes s = annotation_sizes(image);
   const double length = 62 * s.unit, room = length + 1.6 * s.text;
   const glm::dvec2 origin(image.width - s.margin - room, image.height - s.margin - room);
   const glm::dmat3 turn(camera.view);
@@ -86,7 +86,7 @@ void draw_triad(Image& image, const Font& font, const Camera& camera) {
 }
 
 void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profile) {
-  const Sizes s = sizes_of(image);
+  const AnnotationSizes s = annotation_sizes(image);
   double fastest = profile.reference_speed;
   for (const glm::dvec2& p : profile.points) fastest = std::max(fastest, std::abs(p.y));
   if (fastest <= 0 || profile.points.size() < 2) return;
@@ -124,7 +124,7 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profil
 }
 
 void draw_inset(Image& image, const Font& font, const Inset& inset) {
-  const Sizes s = sizes_of(image);
+  const AnnotationSizes s = annotation_sizes(image);
   const double height = inset_height * image.height, width = inset_aspect * height, inner = 0.5 * s.margin;
   const double left = image.width - inner - width, top = inner;
   const double scale = 0.5 * height / inset.half_height;

@@ -10,7 +10,7 @@ namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct SourcePoint {
   Lane x[3], n[3], area;  ///< position, area-weighted normal x_t x x_f, its length

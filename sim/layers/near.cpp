@@ -10,7 +10,7 @@ namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// At a pole there is no derivative along a circle of latitude; a point that is off by less than 1e-6 has one.
 Vec3 beside_the_pole(const Vec3& s) {

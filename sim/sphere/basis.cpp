@@ -11,7 +11,7 @@ namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Up to this degree a dense Fourier product beats FFTW's real transforms (docs/performance.md has the measurement).
 constexpr int dense_fourier_limit = 40;

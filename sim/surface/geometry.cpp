@@ -8,7 +8,7 @@ namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Vector dot(const Matrix& a, const Matrix& b) { return a.cwiseProduct(b).rowwise().sum(); }
 

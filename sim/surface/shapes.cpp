@@ -15,7 +15,7 @@ namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// x = (a1 sin t cos f, a2 sin t sin f, a3 cos t), exact in degree 1.
 Coefficients ellipsoid(int order, const Vec3& axes) {
