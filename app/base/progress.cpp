@@ -6,6 +6,8 @@
 
 #include <unistd.h>
 
+#include <cmath>
+
 namespace app {
 
 Progress::Progress(std::string what, bool quiet)
@@ -35,7 +37,7 @@ void Progress::show(double share, std::string_view detail) {
 }
 
 std::string duration_text(double seconds) {
-  const auto s = static_cast<long long>(seconds + 0.5);
+  const auto s = std::llround(seconds);
   if (s < 60) return fmt::format("{} s", s);
   if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);
   return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);

@@ -84,7 +84,7 @@ int run(const Options& options) {
   }
   if (options.dry_run) return print_plan(settings);
   // Before hours of simulation: can there be pictures at all?
-  render::GlContext(render::parse_gl_choice(options.gl));
+  static_cast<void>(render::GlContext(render::parse_gl_choice(options.gl)));
   check_movie(find_movie_format(settings.movie.format), settings.view.size[0], settings.view.size[1]);
   const FolderLock lock(folder);
   OwnedFiles files(folder);

@@ -39,7 +39,8 @@ struct Net {
 
   Eigen::Index index(int column, int row) const { return Eigen::Index{row} * columns + column; }
   Vec2 node(Eigen::Index k) const {
-    return {x + static_cast<double>(k % columns) * step, y + static_cast<double>(k / columns) * step};
+    const Eigen::Index row = k / columns, column = k % columns;
+    return {x + static_cast<double>(column) * step, y + static_cast<double>(row) * step};
   }
 
   struct Value {

@@ -100,7 +100,7 @@ fs::path write_poster(OwnedFiles& files, const std::vector<double>& times, doubl
       times.begin(), times.end(), [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
   const std::string frame =
       read_whole_file(files.folder() / frame_name(static_cast<std::size_t>(nearest - times.begin())));
-  const fs::path poster = files.folder() / poster_name;
+  fs::path poster = files.folder() / poster_name;
   if (!fs::exists(poster) || read_whole_file(poster) != frame)
     files.write(poster_name, frame);
   else if (!files.listed(poster_name))

@@ -35,7 +35,7 @@ SimulationReport simulate_scene(const Settings& settings, const std::string& nam
   Options options = effort.options;
   options.steps.reset();
   effort.progress.clear();
-  const SimulationReport report = simulate_new(settings, trajectory, options);
+  SimulationReport report = simulate_new(settings, trajectory, options);
   if (report.interrupted) throw Interrupted{trajectory};
   return report;
 }

@@ -134,7 +134,7 @@ ColourTable colour_table(const ColourMapRow& map) {
   std::size_t at = 0;
   for (int i = 0; i < colour_steps; ++i) {
     const double share = static_cast<double>(i) / (colour_steps - 1);
-    Lab lab = path[static_cast<std::size_t>(16 * i)];
+    Lab lab = path[16 * static_cast<std::size_t>(i)];
     if (map.kind == MapKind::sequential) {  // equal steps
       while (at + 1 < length.size() && length[at + 1] < share * length.back()) ++at;
       lab = path[std::min(at + 1, path.size() - 1)];

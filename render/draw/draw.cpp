@@ -24,8 +24,8 @@ std::vector<glm::dvec2> shadows(const Frame& frame) {
     const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
     for (int j = 0; j < columns; j += stride)
       for (int i = 0; i < rings; i += stride) {
-        const glm::dvec2 place =
-            frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(j * rings + i)]);
+        const int point = j * rings + i;
+        const glm::dvec2 place = frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(point)]);
         places.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
       }
   }

@@ -157,11 +157,12 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
     strip.height = page.height > 0 ? page.height : std::ceil(used_height);
     const double left = m.left + (strip.width - used) / 2, top = legend + (strip.height - used_height) / 2;
     for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t row = k / columns, column = k % columns;
       Panel& p = strip.panels[k];
       p.width = width;
       p.height = height;
-      p.left = left + static_cast<double>(k % columns) * (width + gap);
-      p.top = top + title + static_cast<double>(k / columns) * (height + title + 0.3 * theme.text);
+      p.left = left + static_cast<double>(column) * (width + gap);
+      p.top = top + title + static_cast<double>(row) * (height + title + 0.3 * theme.text);
     }
   }
   // Labels wider than their panel stand once, in the middle; titles too long for it lose their time.

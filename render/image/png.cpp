@@ -267,7 +267,7 @@ std::string png_bytes(const Image& image, const PngText& text, int compression, 
   Failure failure;
   const bool written = write_stream(stream, image, chunks, compression, dots_per_inch, failure);
   const bool closed = std::fclose(stream) == 0;
-  const std::string result(bytes ? bytes : "", bytes ? size : 0);
+  std::string result(bytes ? bytes : "", bytes ? size : 0);
   std::free(bytes);
   if (!written || !closed) throw std::runtime_error(std::string("the picture cannot be encoded: ") + failure.text);
   return result;

@@ -77,7 +77,7 @@ Font::Font(Use use) : use_(use) {
     cairo_font_face_destroy(face);
     throw std::runtime_error("Cairo cannot use the embedded font DejaVu Sans");
   }
-  owner.release();
+  static_cast<void>(owner.release());  // Cairo deletes it
   face_ = std::shared_ptr<cairo_font_face_t>(face, cairo_font_face_destroy);
 }
 

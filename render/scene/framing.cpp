@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 #include <stdexcept>
+#include <utility>
 
 namespace render {
 
@@ -123,11 +123,11 @@ int followed_vesicle(const ViewParameters& view, std::size_t vesicles) {
   return view.follow_vesicle;
 }
 
-// Indices of the points that the picture must hold: all, or those of the vesicle that is followed.
-auto shown_points(const Framing& framing, const StateSummary& state) {
-  if (framing.vesicle < 0) return std::views::iota(std::size_t{0}, state.points.size());
+// The points that the picture must hold, all or those of the vesicle that is followed: the first, and the end.
+std::pair<std::size_t, std::size_t> shown_points(const Framing& framing, const StateSummary& state) {
+  if (framing.vesicle < 0) return {0, state.points.size()};
   const std::size_t each = state.points_of_each(), first = each * static_cast<std::size_t>(framing.vesicle);
-  return std::views::iota(first, first + each);
+  return {first, first + each};
 }
 
 // Columns: the axes of the boxes below, those of the picture; of the scene when the camera turns.
@@ -149,7 +149,7 @@ Spread spread_of(const Framing& framing, std::span<const StateSummary> states) {
     const dvec3 centroid = to_axes * framing.moment(state).centre;
     spread.centroids.add(centroid);
     Extent now;
-    for (const std::size_t k : shown_points(framing, state)) {
+    for (auto [k, end] = shown_points(framing, state); k < end; ++k) {
       const dvec3 p = to_axes * state.point(k);
       now.add(p);
       spread.about_centroid.add(p - centroid);
@@ -211,7 +211,7 @@ void fit(Framing& framing, double zoom, std::span<const StateSummary> states) {
     const ViewAxes axes = framing.axes_at(state.time);
     const glm::dmat3 to_picture = glm::transpose(glm::dmat3(axes.right, axes.up, axes.back));
     const dvec3 origin = framing.target_at(framing.moment(state));
-    for (const std::size_t k : shown_points(framing, state)) {
+    for (auto [k, end] = shown_points(framing, state); k < end; ++k) {
       const dvec3 p = to_picture * (state.point(k) - origin);
       distance = std::max({distance, p.z + std::abs(p.x) / tx, p.z + std::abs(p.y) / ty});
       half_height = std::max({half_height, margin * std::abs(p.y) / bodies_height,

@@ -80,7 +80,7 @@ Attempt<Advance> block_implicit(const StepProblem& problem) { return block_schem
 Attempt<Advance> block_jacobi(const StepProblem& problem) {
   return block_scheme(problem,
                       [](const Membrane& m, double c, const Coefficients& r, const Motion& guess, double tolerance) {
-                        const Solve tension = solve_tension(m, r, guess, tolerance);
+                        Solve tension = solve_tension(m, r, guess, tolerance);
                         if (!tension.converged) return tension;
                         Solve position = solve_position(m, c, r, tension.motion, tolerance);
                         position.iterations += tension.iterations;

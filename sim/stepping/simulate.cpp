@@ -135,6 +135,9 @@ struct ResumeRecord {
     }
   }
 };
+// Clang deduces for aggregates from version 17 on.
+template <class File>
+ResumeRecord(const File&, const std::filesystem::path&) -> ResumeRecord<File>;
 
 /// Starts take short steps, but none that doubling would not soon make long.
 bool possible_step(const Scene& scene, const Dynamics& d) {

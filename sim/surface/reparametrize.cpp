@@ -12,7 +12,8 @@ namespace {
 
 /// Tangential step on the sphere that moves the surface point by the tangential part of `shift` (least squares).
 Vec3 parameter_shift(const SphereFrame& frame, const Vec3& x_t, const Vec3& x_f, const Vec3& shift) {
-  const Vec3 a = x_t, b = x_f / frame.sin_theta;
+  const Vec3& a = x_t;
+  const Vec3 b = x_f / frame.sin_theta;
   const double aa = a.dot(a), ab = a.dot(b), bb = b.dot(b), det = aa * bb - ab * ab;
   const double u = a.dot(shift), v = b.dot(shift);
   return ((bb * u - ab * v) * frame.e_theta + (aa * v - ab * u) * frame.e_phi) / det;

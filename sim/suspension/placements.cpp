@@ -18,7 +18,7 @@ namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Uniform in [0, 1), the same on every platform (std::uniform_real_distribution is not).
 double uniform(std::mt19937_64& random) { return double(random() >> 11) * 0x1.0p-53; }
@@ -121,9 +121,9 @@ std::vector<VesicleParameters> lattice(const PlacementParameters& p, const Vesic
   std::vector<VesicleParameters> all;
   for (int k = 0; k < p.count; ++k) {
     VesicleParameters v = original;
-    const Vec3 cell(k % side, k / side % side, k / (side * side));
+    const Eigen::Vector3i cell(k % side, k / side % side, k / (side * side));
     const Vec3 shift = Vec3(uniform(random), uniform(random), uniform(random)) - Vec3::Constant(0.5);
-    v.center = p.center + spacing * (cell - Vec3::Constant((side - 1) / 2.0) + 2 * p.jitter * shift);
+    v.center = p.center + spacing * (cell.cast<double>() - Vec3::Constant((side - 1) / 2.0) + 2 * p.jitter * shift);
     if (p.orientation == "random") v.axis = random_direction(random);
     all.push_back(std::move(v));
   }

@@ -7,7 +7,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <stdexcept>
 
@@ -362,7 +361,7 @@ void TrajectoryWriter::note(std::string_view text) {
   const std::vector<std::string> notes = impl_->file.notes();
   if (notes.size() == file::note_rows || std::find(notes.begin(), notes.end(), cut) != notes.end()) return;
   char row[file::note_bytes] = {};
-  std::memcpy(row, cut.data(), cut.size());
+  cut.copy(row, cut.size());
   impl_->file.descriptor.write(impl_->file.map.at("notes").offset + notes.size() * file::note_bytes, row, sizeof row);
   impl_->file.set_word("notes_count", notes.size() + 1);
 }

@@ -225,7 +225,7 @@ State unpack_state(const Words& words, const TrajectoryLayout& layout) {
 
 std::vector<Column> step_columns(const TrajectoryLayout& layout) {
   std::vector<Column> columns;
-  const auto add = [&](std::vector<std::uint64_t> shape) {
+  const auto add = [&](const std::vector<std::uint64_t>& shape) {
     return [&columns, shape](const char* name, const char* meaning, const double&) {
       columns.push_back({std::string("steps/") + name, meaning, false, shape});
     };
