@@ -74,6 +74,7 @@ Iterations average_iterations(sim::Plans& plans, int p, double contrast, const E
   const Span span = span_of(effort);
   sim::Scene scene = sheared_prolate(p, contrast);
   scene.time.scheme = "bdf2";
+  scene.time.step = 0.1;  // of the start; the steps are chosen here
   const sim::Model model = sim::make_model(scene, plans);
   sim::Dynamics dynamics = sim::initial_dynamics(model);
   Iterations all;

@@ -179,6 +179,7 @@ StepTables empty_tables(const std::vector<int>& orders) {
 sim::Scene scene_of(const SchemeRow& row, int p, double end) {
   sim::Scene scene = sheared_prolate(p, row.contrast);
   scene.time.scheme = row.scheme;
+  scene.time.step = 0.1;  // of the start; the steps are chosen here
   scene.time.end = end;
   scene.vesicles[0].bending_modulus = row.modulus;
   scene.numerics.gmres_tolerance = 1e-8;
@@ -244,6 +245,7 @@ TextTable pair_table(sim::Plans& plans, double end, const Effort& effort) {
       if (effort.quick && std::string_view(row.scheme) != "bdf2") continue;
       sim::Scene scene = sheared_pair(p, 10);
       scene.time.scheme = row.scheme;
+      scene.time.step = 0.1;  // of the start; the steps are chosen here
       scene.numerics.gmres_tolerance = 1e-8;
       const StableStep found =
           stable_step(scene, plans, ladder, end, effort, fmt::format("two vesicles, {}, p = {}", row.scheme, p));

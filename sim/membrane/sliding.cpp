@@ -27,19 +27,19 @@ Coefficients sliding_velocity(const SlidingProblem& s, const Coefficients& guess
   const int p = s.basis.order();
   const Vector a = degree_weights(p);
   const Matrix& n = s.geometry.n;
-  const auto apply = [&](const Matrix& w) -> Matrix {
-    const Matrix on_grid = s.basis.synthesize({p, w}).values;
-    const Vector along = on_grid.cwiseProduct(n).rowwise().sum();
-    const Matrix normal_part = n.array().colwise() * along.array();
-    return ((a.array() + smallness).matrix().asDiagonal() * w) + tangentiality * s.basis.analyze(normal_part).values;
-  };
   const RigidMotion rigid = shape_motion(s.body, s.geometry, s.basis.synthesize(s.velocity).values);
   const Matrix within = s.velocity.values - rigid_velocity(s.body, rigid).values;
   const double strain = (s.gradient + s.gradient.transpose()).norm() / 2;
   const double rate = std::max(motion_rate({p, within}, s.radius), strain / 2);
-  const Matrix wanted = (within + rate * s.position.values) / (1 + rate * s.c);
-  const Matrix right = -(a.asDiagonal() * wanted);
-  const Vector inverse = (a.array() + smallness + tangentiality / 3).inverse();
+  const Vector diagonal = a.array() * (1 + rate * s.c) + smallness;
+  const auto apply = [&](const Matrix& w) -> Matrix {
+    const Matrix on_grid = s.basis.synthesize({p, w}).values;
+    const Vector along = on_grid.cwiseProduct(n).rowwise().sum();
+    const Matrix normal_part = n.array().colwise() * along.array();
+    return (diagonal.asDiagonal() * w) + tangentiality * s.basis.analyze(normal_part).values;
+  };
+  const Matrix right = -(a.asDiagonal() * (within + rate * s.position.values));
+  const Vector inverse = (diagonal.array() + tangentiality / 3).inverse();
   Matrix w = guess.values, rest = right - apply(w);
   Matrix z = inverse.asDiagonal() * rest, direction = z;
   const double enough = tolerance * tolerance * right.squaredNorm();

@@ -1,13 +1,16 @@
 // A grid that moves as part of a step: grid points slide along the membrane with a tangential velocity w,
 //   x' = u + w,
 // so that the high degrees of the position stay small while the membrane flows. w is smooth in time, so that nothing
-// has to be carried to another parametrisation, ever. It minimises over fields of degree p
-//   sum_n a_n |w_n + g_n|^2 + eps |w|^2 + L oint (w.n)^2 dOmega,    g = (u - R + r y)/(1 + r c),
-// with a_n = (n/p)^4, a_0 = 0: the degrees of x' relative to the rigid motion R of the shape shall be -r times those of
-// the new position y + c w, the more so the higher they are; w is as small as possible otherwise, and tangential up to
-// 1/L. r is the rate at which the membrane moves within its shape, the size of u - R over the radius, or half of that
-// at which the flow strains it, if that is larger: neither depends on how fast the whole turns. dOmega is that of the
-// parameter sphere.
+// has to be carried to another parametrisation, ever. With the rigid motion R of the shape and a rate r, it minimises
+// over fields of degree p
+//   sum_n a_n (1 + r c) |w_n + g_n|^2 + eps |w|^2 + L oint (w.n)^2 dOmega,    g = (u - R + r y)/(1 + r c),
+// with a_n = (n/p)^4, a_0 = 0, that is, with the new position x+ = y + c w,
+//   a_n (w + u - R + r x+)_n + eps w_n + L (...) = 0:
+// the degrees of x' relative to R shall be -r times those of x+, the more so the higher they are; w is as small as
+// possible otherwise, and tangential up to 1/L. c does not occur in this condition, which is thus the same for every
+// step, so that formulas of high order keep it. r is the rate at which the membrane moves within its shape, the size of
+// u - R over the radius, or half of that at which the flow strains it, if that is larger: neither depends on how fast
+// the whole turns. dOmega is that of the parameter sphere.
 #pragma once
 
 #include "sim/membrane/rigid.h"

@@ -49,7 +49,7 @@ Outlook outlook(std::span<const Level> levels, const Frame& frame, int order, Ex
 
 /// Residual of the least squares for w, relative: w must be smooth in time.
 double sliding_tolerance(const Scene& scene) {
-  return steps_adapt(scene.time) ? std::min(0.1 * tolerance_of(scene.time), 1e-4) : 1e-6;
+  return steps_adapt(scene.time) ? std::min(0.1 * tolerance_of(scene.time), 1e-4) : 1e-8;
 }
 
 }  // namespace

@@ -2,9 +2,10 @@
 //
 // The tolerance is an error of position, in area radii for each radius that the membrane moves: a step over dt may
 // leave
-//   tolerance (w dt + a),   w the rate of motion, largest of all vesicles, a = 0.01,
-// where a keeps steps from becoming short for nothing while all motion dies out. The length follows the estimate of the
-// order in use, the order follows the three estimates of its neighbours.
+//   1/2 tolerance (w dt + a),   w the rate of motion, largest of all vesicles, a = 0.01,
+// where the half makes up for the growth of errors later on, and a keeps steps from becoming short for nothing while
+// all motion dies out. The length follows the estimate of the order in use, the order follows the three estimates of
+// its neighbours.
 #pragma once
 
 #include "sim/stepping/stepper.h"

@@ -17,11 +17,11 @@ constexpr double same_time = 1e-9;  ///< times nearer than this share of a step 
 
 /// Time of the next saved state: multiples of save_every, and the end. Not counted from the last one, which may have
 /// been the end of a run that is continued, or saved by another measure.
-double save_time(const Scene& scene, const Dynamics& d) {
+double save_time(const Scene& scene, double time) {
   const std::optional<double> interval = save_interval(scene.time);
   if (!interval) return scene.time.end;
   const double every = *interval;
-  return std::min((std::floor(d.time / every + same_time) + 1) * every, scene.time.end);
+  return std::min((std::floor(time / every + same_time) + 1) * every, scene.time.end);
 }
 
 /// The step that reaches `target` in equal steps no longer than the present limit.
@@ -195,7 +195,7 @@ class Run {
   std::optional<Rejection> step() {
     const double switched = next_switch(scene_.flows, d_.time);
     const bool adapts = steps_adapt(scene_.time);
-    const double due = save_time(scene_, d_);
+    const double due = save_time(scene_, d_.time);
     Attempt<Step> step = adapts ? adaptive_step(model_, d_, std::min(scene_.time.end, switched), noting_)
                                 : fixed_step_with_retries(model_, d_, std::min(due, switched), noting_);
     if (!step) return step.rejection();
@@ -264,9 +264,9 @@ class Run {
 
   /// All states that are due in the last step.
   void save_between(const Dynamics& before) {
-    for (Dynamics at = before; at.time < d_.time;) {
-      at.time = save_time(scene_, at);
-      if (at.time <= d_.time) append(interpolated(model_, before, d_, at.time));
+    for (double time = save_time(scene_, before.time); time <= d_.time; time = save_time(scene_, time)) {
+      append(interpolated(model_, before, d_, time));
+      if (time == scene_.time.end) break;
     }
   }
 

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -179,11 +180,11 @@ bool holds_trajectory(const std::filesystem::path& path) { return file::holds_ma
 struct TrajectoryWriter::Impl {
   std::optional<file::Lock> lock;  ///< none before the file has its name: then its draft is locked
   OpenFile file;
-  std::int64_t states = 0, steps = 0;  ///< committed
-  std::int64_t last_state_step = -1;
-  double last_time = 0;
-  double last_step = 0;        ///< of the last record
-  std::uint64_t sequence = 0;  ///< of the last resume payload
+  std::int64_t states = 0, steps = 0;                           ///< committed
+  double last_time = -std::numeric_limits<double>::infinity();  ///< of the last state
+  double last_step = 0;                                         ///< of the last record
+  bool settled = true;                                          ///< the counters in the file are these
+  std::uint64_t sequence = 0;                                   ///< of the last resume payload
   std::chrono::steady_clock::time_point last_append = std::chrono::steady_clock::now();
 
   explicit Impl(OpenFile f) : file(std::move(f)) {}
@@ -226,6 +227,7 @@ struct TrajectoryWriter::Impl {
   }
 
   void append_steps(std::span<const StepRecord> records) {
+    settle_counters();
     const std::int64_t before = steps;
     for (const StepRecord& record : records) {
       if (steps > 0 && record.step <= last_step) continue;
@@ -240,8 +242,17 @@ struct TrajectoryWriter::Impl {
     if (steps != before) file.set_word("steps/count", bits(steps));
   }
 
+  /// A writer may have been stopped between rows and their counter; rows that are there are not written again.
+  void settle_counters() {
+    if (settled) return;
+    settled = true;
+    for (const auto& [counter, rows] : {std::pair{"count", states}, {"steps/count", steps}})
+      if (file.word(counter) != bits(rows)) file.set_word(counter, bits(rows));
+  }
+
   void append(const State& state) {
-    if (state.step <= last_state_step) return;
+    settle_counters();
+    if (state.time <= last_time) return;
     if (states == file.map.layout.states) grow(2 * states, 0, 0);
     const auto now = std::chrono::steady_clock::now();
     const bool sync = now - last_append > unsynced_interval;
@@ -250,7 +261,6 @@ struct TrajectoryWriter::Impl {
     file.set_word("count", bits(states + 1));
     if (sync) file.descriptor.sync(true);
     ++states;
-    last_state_step = state.step;
     last_time = state.time;
     last_append = now;
   }
@@ -314,9 +324,9 @@ TrajectoryWriter TrajectoryWriter::resume(const std::filesystem::path& name) {
   impl->lock.emplace(std::move(lock));
   impl->states = impl->file.committed("count", "checksum");
   impl->steps = impl->file.committed("steps/count", "steps/checksum");
+  impl->settled = false;
   if (impl->states == 0) throw std::runtime_error(fmt::format("trajectory '{}' has no intact state", path.string()));
   const State last = impl->file.state(impl->states - 1);
-  impl->last_state_step = last.step;
   impl->last_time = last.time;
   if (impl->steps > 0) impl->last_step = impl->file.step(impl->steps - 1).step;
   impl->sequence = impl->file.newest_slot().sequence;

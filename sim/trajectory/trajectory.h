@@ -19,7 +19,8 @@
 
 namespace sim {
 
-/// Version of the file layout; readers accept this one only.
+/// Version of the file layout. Files of the first can be read, not continued: they lack the sliding of the grid, and
+/// the order and the error of steps, which are then zero.
 inline constexpr int trajectory_format = 2;
 
 /// Highest order of any field or label in a file.
@@ -34,6 +35,7 @@ struct TrajectoryLayout {
   std::int64_t states = 1;  ///< rows for saved states, state 0 included
   std::int64_t steps = 1;   ///< rows for step records
   std::int64_t resume = 1;  ///< numbers in a resume payload
+  int format = trajectory_format;
 };
 
 /// Metadata of a file, fixed at creation.

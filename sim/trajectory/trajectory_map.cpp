@@ -82,8 +82,9 @@ void require_separate(const std::map<std::string, Place, std::less<>>& datasets)
   }
 }
 
-Map read_map(const Descriptor& file, hid_t h5, const Attributes& attributes, std::uint64_t file_bytes) {
+Map read_map(const Descriptor& file, hid_t h5, const Attributes& attributes, std::uint64_t file_bytes, int format) {
   Map map;
+  map.layout.format = format;
   map.header.program = attributes.text("program");
   map.header.build = attributes.text("build");
   const std::string warnings = attributes.text("warnings");
@@ -165,10 +166,11 @@ std::optional<Map> map(const Descriptor& file) {
     const Attributes attributes = attributes_of(file);
     if (!attributes.has("content") || !attributes.has("format") || attributes.text("content") != content)
       throw std::runtime_error(foreign(path));
-    if (const std::int64_t format = attributes.number("format"); format != trajectory_format)
-      throw std::runtime_error(
-          fmt::format("trajectory '{}' has format {}; this program reads format {}", path, format, trajectory_format));
-    return read_map(file, h5, attributes, size);
+    const std::int64_t format = attributes.number("format");
+    if (format < 1 || format > trajectory_format)
+      throw std::runtime_error(fmt::format("trajectory '{}' has format {}; this program reads formats 1 to {}", path,
+                                           format, trajectory_format));
+    return read_map(file, h5, attributes, size, static_cast<int>(format));
   } catch (const Unread& unread) {
     throw std::runtime_error(fmt::format(
         "HDF5 file '{}' is stored in a way that this program does not read: {}; 'h5repack' can make a plain copy", path,

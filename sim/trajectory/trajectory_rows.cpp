@@ -29,8 +29,9 @@ void walk_state(Archive& archive) {
                 &VesicleState::position_before);
   archive.field("velocity_before", "the velocity of its points, sliding included", 3, false,
                 &VesicleState::velocity_before);
-  archive.field("sliding", "coefficients of the velocity of the points along the membrane, relative to it", 3, false,
-                &VesicleState::sliding);
+  if (archive.layout.format > 1)
+    archive.field("sliding", "coefficients of the velocity of the points along the membrane, relative to it", 3, false,
+                  &VesicleState::sliding);
 }
 
 struct Describe {
@@ -220,13 +221,26 @@ State unpack_state(const Words& words, const TrajectoryLayout& layout) {
   Unpack archive{words, layout};
   archive.state.vesicles.resize(static_cast<std::size_t>(layout.vesicles));
   walk_state(archive);
+  if (layout.format == 1)
+    for (VesicleState& v : archive.state.vesicles)
+      v.sliding = {v.position.order, Matrix::Zero(coefficient_count(v.position.order), 3)};
   return std::move(archive.state);
 }
+
+namespace {
+
+/// Files of the first format know less of a step.
+bool has_column(const TrajectoryLayout& layout, std::string_view name) {
+  return layout.format > 1 || (name != "order" && name != "error");
+}
+
+}  // namespace
 
 std::vector<Column> step_columns(const TrajectoryLayout& layout) {
   std::vector<Column> columns;
   const auto add = [&](const std::vector<std::uint64_t>& shape) {
-    return [&columns, shape](const char* name, const char* meaning, const double&) {
+    return [&columns, shape, &layout](const char* name, const char* meaning, const double&) {
+      if (!has_column(layout, name)) return;
       columns.push_back({std::string("steps/") + name, meaning, false, shape});
     };
   };
@@ -260,7 +274,9 @@ StepRecord unpack_step(const Words& words, const TrajectoryLayout& layout) {
   StepRecord record;
   record.vesicles.resize(static_cast<std::size_t>(layout.vesicles));
   std::size_t start = 0;
-  visit(record, [&](const char*, const char*, double& value) { value = std::bit_cast<double>(words.at(start++)); });
+  visit(record, [&](const char* name, const char*, double& value) {
+    if (has_column(layout, name)) value = std::bit_cast<double>(words.at(start++));
+  });
   for (std::size_t v = 0; v < record.vesicles.size(); ++v) {
     std::size_t column = 0;
     visit(record.vesicles[v], [&](const char*, const char*, double& value) {

@@ -1,6 +1,7 @@
 // Files that somebody else has made or changed: each is refused in one sentence, or read for what it is.
 #include "desk.h"
 #include "sim/stepping/dynamics.h"
+#include "sim/surface/geometry.h"
 #include "sim/trajectory/attributes.h"
 #include "sim/trajectory/trajectory_datasets.h"
 #include "sim/trajectory/trajectory_file.h"
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <csignal>
 #include <limits>
+#include <numbers>
 #include "tests/support/catch.h"
 
 using namespace faults;
@@ -219,6 +221,34 @@ TEST_CASE("attributes in a heap of their own, as earlier versions left them, are
   CHECK(reader.header().program == before.program);
   CHECK(reader.header().scene == before.scene);
   CHECK(reader.damaged().empty());
+}
+
+TEST_CASE("a trajectory of the first format is read, without what it does not know, and is not continued",
+          "[hostile]") {
+  const Desk desk;
+  const fs::path first = fs::path(TANKTREAD_CORPUS) / "trajectory" / "first-format.h5";
+  const sim::TrajectoryReader reader(first);
+  CHECK(reader.layout().format == 1);
+  REQUIRE(reader.count() == 2);
+  CHECK(reader.damaged().empty());
+  const sim::VesicleState v = reader.state(1).vesicles[0];
+  CHECK(v.sliding.values.isZero(0));
+  CHECK(v.sliding.values.rows() == v.position.values.rows());
+  const sim::Basis basis(v.position.order, sim::measure_order(v.position.order));
+  CHECK(sim::area_volume(basis, v.position).area == Approx(4 * std::numbers::pi).epsilon(1e-9));
+  REQUIRE(reader.steps().size() == 1);
+  CHECK(reader.steps()[0].dt == 0.1);
+  CHECK(reader.steps()[0].order == 0);
+  fs::copy_file(first, desk / "t.h5");
+  const std::string before = support::read_file(desk / "t.h5");
+  support::write_file(desk / "own.toml", reader.header().scene);
+  const Outcome outcome =
+      desk({"simulate", desk.file("own.toml"), "-o", desk.file("t.h5"), "--resume", "-q", "--set", "time.end=0.3"});
+  INFO(outcome.err);
+  CHECK(outcome.status == 1);
+  CHECK(one_sentence(outcome.err));
+  CHECK_THAT(outcome.err, Contains("cannot be resumed"));
+  CHECK(support::read_file(desk / "t.h5") == before);
 }
 
 TEST_CASE("no flipped bit in a heap of attributes and its index passes unnoticed", "[hostile]") {

@@ -20,14 +20,15 @@ with tempfile.TemporaryDirectory() as folder:
     with h5py.File(path, "r") as file:
         count = int(file["count"][()])
         assert count >= 1
-        assert file.attrs["format"] == 1
+        assert file.attrs["format"] == 2
         assert b"[time]" in file["scene"][()]
         position = file["position"][:count]
         order = int(file["order"][0, 0])
         rows = (order + 1) ** 2
         assert position.shape[1:3] == (1, 3) and position.shape[3] >= rows
         assert numpy.isfinite(position).all() and abs(position[0, 0, :, 1:4]).max() > 0.1
-        assert list(file["steps/step"][: int(file["steps/count"][()])]) == [1, 2, 3]
+        steps = int(file["steps/count"][()])
+        assert steps >= 3 and list(file["steps/step"][:steps]) == list(range(1, steps + 1))
         assert all(file[name].attrs["meaning"] for name in file if name != "steps")
         # The checksum of the first step record: row number, then its numbers in the order of the file.
         names = sorted((n for n in file["steps"] if n not in ("count", "checksum")), key=lambda n: file["steps"][n].id.get_offset())
@@ -68,11 +69,11 @@ with tempfile.TemporaryDirectory() as folder:
 
     def later(other):
         with h5py.File(other, "r+") as file:
-            file.attrs["format"] = 2
+            file.attrs["format"] = 3
 
     def foreign(other):
         with h5py.File(other, "w") as file:
             file["temperature"] = [1.0, 2.0]
 
-    assert "has format 2; this program reads format 1" in refusal(later, "later.h5")
+    assert "has format 3; this program reads formats 1 to 2" in refusal(later, "later.h5")
     assert "not a Tanktread trajectory" in refusal(foreign, "foreign.h5")

@@ -41,7 +41,9 @@ Run run(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("a flow that is switched on later acts from then on as one that acts from the start") {
-  const Run from_start = run(tilted(0.1, 1));
+  Scene at_once = tilted(0.1, 1);
+  at_once.time.save_every = 1;
+  const Run from_start = run(at_once);
   for (const double from : {0.4, 0.25, 0.333}) {
     Scene scene = tilted(0.1, 1 + from);
     scene.flows[0].time_factor = "step";
@@ -54,7 +56,9 @@ TEST_CASE("a flow that is switched on later acts from then on as one that acts f
 }
 
 TEST_CASE("a flow that is switched off leaves the vesicle as it was at that time") {
-  const Run on = run(tilted(0.1, 0.57));
+  Scene whole = tilted(0.1, 0.57);
+  whole.time.save_every = 0.57;
+  const Run on = run(whole);
   Scene scene = tilted(0.1, 1.5);
   scene.flows[0].time_factor = "step";
   scene.flows[0].until = 0.57;
