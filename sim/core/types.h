@@ -44,7 +44,8 @@ struct VesicleState {
   Matrix tracers;                ///< tracer dots: their parameters s as unit vectors, count x 3; the dot is at x(s)
   Coefficients position_before;  ///< previous saved state in *this* parametrisation (first state: = position)
   Coefficients velocity_before;  ///< velocity of its points, likewise; Hermite interpolation uses the two
-  Coefficients sliding;          ///< of the points s along the membrane: x' = velocity + sliding; 3 fields, order p
+  /// Velocity of the points s along the membrane, and of the correction of area and volume: x' = velocity + sliding.
+  Coefficients sliding;          ///< 3 fields, order p
   std::int64_t relabelled = 0;   ///< how often the parametrisation has been changed since t = 0
   std::int64_t labels_laid = 0;  ///< how often the labels have been laid anew (they then restart as s)
   double labels_laid_time = 0;   ///< when that last happened

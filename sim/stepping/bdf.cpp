@@ -121,8 +121,7 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
     expected.push_back(outlook(levels, moving[k], order, extrapolation, euler_predicts));
     const Outlook& o = expected.back();
     at.push_back(o.at);
-    behind.push_back({o.at.order, o.behind.values - o.at.values});
-    if (slides) behind.back().values += c * o.sliding.values;
+    behind.push_back({o.at.order, o.behind.values - o.at.values + c * o.sliding.values});
     guess.push_back(o.motion);
   }
 
@@ -137,7 +136,7 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
     const Membrane& m = suspension.membranes[k];
     Motion& motion = result->motions[k];
     const Coefficients u{m.order(), motion.velocity.values - frame_velocity(m.body, moving[k]).values};
-    Moved moved{{m.order(), expected[k].behind.values + c * u.values}, {}, {}, {}, {}, 0};
+    Moved moved{{m.order(), expected[k].behind.values + c * u.values}, {}, {}, {}, {}, c, 0};
     moved.sliding = {m.order(), Matrix::Zero(u.values.rows(), 3)};
     if (slides) {
       const double radius = std::sqrt(v.area / four_pi);

@@ -2,7 +2,9 @@
 // x_{n-1}, ... and the polynomial x* through the last of them at the new time,
 //   u+ = (x+ - h)/c - w+:  operators, normal and flow at x*, one assembly and one linear solve a step,
 //   known forces at h + c w*,  y = h + c u+,  w+ from y and u+ (sliding.h),  x+ = y + c w+,
-// where w*, and the guess for u+ and for the tension, are extrapolated like x*.
+// where w*, and the guess for u+ and for the tension, are extrapolated like x*. The shift that corrects area and volume
+// afterwards counts as a part of w: without it forces would be those of a place that is off by the shift, an error of
+// first order.
 //
 // Levels are seen from a frame that moves with the vesicle (rigid.h), steadily as at t_n: past positions are where it
 // carries them by the new time, and only the motion relative to it is discretised. Steady drift and rotation have no

@@ -18,7 +18,7 @@ struct VesicleDynamics {
   Coefficients position;  ///< x_n
   History history;        ///< x_{n-1}, ... as far as the scheme looks back; empty at a start
   Motion motion;          ///< velocity and tension of the last solve
-  Coefficients sliding;   ///< w_n: velocity of the grid points along the membrane, relative to it
+  Coefficients sliding;   ///< w_n: velocity of the grid points relative to the membrane, and that of the correction
   Frame frame;            ///< the motion of its shape at t_n
   Coefficients labels;
   Matrix tracers;               ///< parameters of the tracer dots

@@ -17,7 +17,7 @@ namespace sim {
 struct PastLevel {
   Coefficients position;  ///< x_{n-k}
   Motion motion;          ///< velocity and tension at that time
-  Coefficients sliding;   ///< w_{n-k}: velocity of the grid points along the membrane, relative to it
+  Coefficients sliding;   ///< w_{n-k}: velocity of the grid points relative to the membrane, and that of the correction
   double dt = 0;          ///< length of the step that led on from it
 };
 

@@ -33,7 +33,7 @@ Attempt<Advance> globally_implicit(const StepProblem& problem) {
     const Frame frame = frame_of(suspension.membranes[k], motion.velocity, problem.flows, time);
     const double error = euler_error(d.vesicles[k], motion, dt);
     Coefficients moved{x[k].order, x[k].values + dt * motion.velocity.values};
-    a.vesicles.push_back({std::move(moved), std::move(motion), no_sliding(x[k].order), frame, {}, error});
+    a.vesicles.push_back({std::move(moved), std::move(motion), no_sliding(x[k].order), frame, {}, 0, error});
   }
   return a;
 }
@@ -70,7 +70,7 @@ Attempt<Advance> block_scheme(const StepProblem& problem,
     Coefficients moved{x[k].order, x[k].values + dt * self.motion.velocity.values};
     const Frame frame = frame_of(m, self.motion.velocity, problem.flows, d.time + dt);
     const double error = euler_error(d.vesicles[k], self.motion, dt);
-    a.vesicles.push_back({std::move(moved), std::move(self.motion), no_sliding(x[k].order), frame, {}, error});
+    a.vesicles.push_back({std::move(moved), std::move(self.motion), no_sliding(x[k].order), frame, {}, 0, error});
   }
   return a;
 }

@@ -32,6 +32,7 @@ struct Moved {
   Coefficients sliding;
   Frame frame;
   History history;
+  double c = 0;  ///< of the formula, x+ = h + c x'; 0: no formula looks back at how the position came about
   /// Estimated local error of the position, before any correction, by size_of(). Of the right order; right to leading
   /// order except for block-jacobi and explicit, whose splitting it does not see.
   double error = 0;

@@ -114,8 +114,12 @@ Attempt<Finished> finish_vesicle(const Model& s, VesicleDynamics& v, Moved moved
     record.correction = std::max(record.correction, *shift);
     return std::nullopt;
   };
-  if (n.correction)
+  if (n.correction) {
+    const Matrix uncorrected = v.position.values;
     if (auto rejection = correct_to(there)) return *rejection;
+    // The shift is part of the motion: the next step expects the like, or its forces would be those of another place.
+    if (moved.c > 0) v.sliding.values += (v.position.values - uncorrected) / moved.c;
+  }
   // The shift of the correction is part of the motion, except that the prediction of a first step knows nothing of it.
   if (scheme.slides && !before.history.levels.empty())
     finished.errors = estimated_errors(before, dt, v.position, all.control.order + 1);

@@ -78,13 +78,17 @@ TEST_CASE("formulas of every order are exact for polynomials of that degree on u
   }
 }
 
-TEST_CASE("the formulas of third and fourth order have that order in time, with a grid that slides") {
-  // After a start by short steps; the finest run stands for the limit.
-  const auto position_after = [](const char* scheme, int count) {
+TEST_CASE("formulas have their order in time, with the correction of area and volume and with a grid that slides") {
+  // After a start by short steps; the finest run stands for the limit. Not with both at once: the grid slides by what
+  // is known before the correction, which moves points, along the membrane, by 1e-7 more or less.
+  const bool corrects = GENERATE(true, false);
+  const auto position_after = [&](const char* scheme, int count) {
     Plans plans;
     Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 6, 3), 1, 2, scheme);
     scene.numerics.upsampling = 3;
     scene.numerics.gmres_tolerance = 1e-12;
+    scene.numerics.correction = corrects;
+    scene.numerics.reparametrization = corrects ? "off" : "moving";
     const Model s = make_model(scene, plans);
     Dynamics d = initial_dynamics(s);
     expect(s, d, evaluate(s, d).value());
@@ -94,12 +98,12 @@ TEST_CASE("the formulas of third and fourth order have that order in time, with 
     return test::advanced(s, d, 1.2 / count, count).vesicles[0].position.values;
   };
   const auto [scheme, order] = GENERATE(table<const char*, double>({{"bdf2", 2.0}, {"bdf3", 3.0}, {"bdf4", 4.0}}));
-  INFO(scheme);
+  INFO(scheme << (corrects ? ", correction" : ", sliding"));
   const Matrix limit = position_after("bdf4", 192);
   const double coarse = (position_after(scheme, 24) - limit).norm(), fine = (position_after(scheme, 48) - limit).norm();
   INFO(coarse << ", " << fine);
   CHECK(std::log2(coarse / fine) > order - 0.5);
-  CHECK(std::log2(coarse / fine) < order + 1);
+  CHECK(std::log2(coarse / fine) < order + 1.3);
 }
 
 TEST_CASE("adaptive steps err by less than the tolerance for each radius that the membrane moves, and by little less") {
