@@ -8,11 +8,11 @@ namespace sim::file {
 
 namespace {
 
-constexpr const char* what = "the index of its attributes";
+constexpr const char* index_of_attributes = "the index of its attributes";
 constexpr std::uint64_t attribute_names = 8, huge_objects = 1;  // types of B-trees
 
 void require(bool fits) {
-  if (!fits) throw Refused(what);
+  if (!fits) throw Refused(index_of_attributes);
 }
 
 /// Records of a B-tree of one leaf, as the attributes of any trajectory are, or of one node with leaves.
@@ -24,7 +24,7 @@ std::vector<std::string> records(Blocks& blocks, std::uint64_t address, std::uin
   const std::uint64_t node_bytes = c.number(4);
   require(c.number(2) == record_bytes);
   const std::uint64_t depth = c.number(2);
-  if (depth > 1) throw Unread(what);
+  if (depth > 1) throw Unread(index_of_attributes);
   c.skip(2);
   const std::uint64_t root = c.number(8), count = c.number(2);
   std::vector<std::string> all;
@@ -73,7 +73,7 @@ struct Heap {
     Cursor c(head);
     require(c.bytes(4) == "FRHP" && c.number(1) == 0);
     id_bytes = c.number(2);
-    if (c.number(2) != 0) throw Unread(what);  // filters
+    if (c.number(2) != 0) throw Unread(index_of_attributes);  // filters
     sealed = c.number(1) & 2;
     const std::uint64_t largest_object = c.number(4);
     c.skip(8);
@@ -85,7 +85,7 @@ struct Heap {
     // As HDF5 makes them for attributes; others might take any memory.
     if (width != 4 || !std::has_single_bit(first) || largest != 65536 || first > largest || bits > 64 ||
         largest_object == 0 || largest_object >= largest)
-      throw Unread(what);
+      throw Unread(index_of_attributes);
     offset_bytes = (bits + 7) / 8;
     length_bytes = static_cast<std::uint64_t>(std::bit_width(largest_object) - 1) / 8 + 1;
     if (root == no_address) return;
@@ -93,7 +93,8 @@ struct Heap {
       parts.push_back({0, root, first});
       return;
     }
-    if (first << (rows < 2 ? 0 : std::min<std::uint64_t>(rows - 2, 32)) > largest) throw Unread(what);  // indirect rows
+    if (first << (rows < 2 ? 0 : std::min<std::uint64_t>(rows - 2, 32)) > largest)
+      throw Unread(index_of_attributes);  // indirect rows
     const std::string table = blocks.sealed(root, 13 + offset_bytes + rows * width * 8);
     Cursor t(table);
     require(t.bytes(4) == "FHIB" && t.number(1) == 0 && t.number(8) == address);
@@ -114,7 +115,7 @@ struct Heap {
       const std::uint64_t offset = c.number(offset_bytes), length = c.number(length_bytes);
       return managed(offset, length);
     }
-    if (kind != 0x10 || id_bytes > 9) throw Unread(what);
+    if (kind != 0x10 || id_bytes > 9) throw Unread(index_of_attributes);
     const std::uint64_t key = c.number(id_bytes - 1);
     if (huge.empty()) huge = records(blocks, huge_index, huge_objects, 24);
     for (const std::string& record : huge) {
@@ -122,7 +123,7 @@ struct Heap {
       const std::uint64_t at = r.number(8), size = r.number(8);
       if (r.number(8) == key) return blocks.at(at, size);
     }
-    throw Refused(what);
+    throw Refused(index_of_attributes);
   }
 
   std::string managed(std::uint64_t offset, std::uint64_t length) {
@@ -132,7 +133,7 @@ struct Heap {
       require(length <= b.size - (offset - b.offset));
       return b.bytes.substr(offset - b.offset, length);
     }
-    throw Refused(what);
+    throw Refused(index_of_attributes);
   }
 
   void load(Block& b) const {
@@ -154,7 +155,7 @@ std::vector<std::string> dense_attributes(Blocks& blocks, std::uint64_t heap, st
   Heap from(blocks, heap);
   std::vector<std::string> all;
   for (const std::string& record : records(blocks, index, attribute_names, from.id_bytes + 9)) {
-    if (record[from.id_bytes] & 2) throw Unread(what);  // shared: in a heap of the whole file
+    if (record[from.id_bytes] & 2) throw Unread(index_of_attributes);  // shared: in a heap of the whole file
     all.push_back(from.object(std::string_view(record).substr(0, from.id_bytes)));
   }
   return all;
