@@ -99,7 +99,7 @@ TEST_CASE("formulas have their order in time, with the correction of area and vo
   };
   const auto [scheme, order] = GENERATE(table<const char*, double>({{"bdf2", 2.0}, {"bdf3", 3.0}, {"bdf4", 4.0}}));
   INFO(scheme << (corrects ? ", correction" : ", sliding"));
-  const Matrix limit = position_after("bdf4", 192);
+  const Matrix limit = position_after("bdf4", 96);
   const double coarse = (position_after(scheme, 24) - limit).norm(), fine = (position_after(scheme, 48) - limit).norm();
   INFO(coarse << ", " << fine);
   CHECK(std::log2(coarse / fine) > order - 0.5);

@@ -184,7 +184,7 @@ TEST_CASE("every scheme estimates the error of its step, and the estimate falls 
   const double start = 0.8;  // the shape is then on its way
   const int levels = scheme_of(coarse_scene).past_levels;
   const auto estimate_and_error = [&](double dt) {
-    constexpr int parts = 40;
+    constexpr int parts = 16;
     const int back = std::max(levels, 1);
     // Exact states a step apart, the latest last, and the one after.
     std::vector<Dynamics> past{test::advanced(fine, initial_dynamics(fine), (start - back * dt) / parts, parts)};
