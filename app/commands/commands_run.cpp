@@ -48,7 +48,8 @@ int report_end(const SimulationReport& report, const fs::path& trajectory, const
     return 1;
   }
   say(options, there + (report.already_finished ? ", finished before" : ""));
-  if (!options.quiet && report.time > 0) say(options, error_summary(trajectory));
+  if (options.quiet) return 0;
+  if (const std::string errors = error_summary(trajectory); !errors.empty()) say(options, errors);
   return 0;
 }
 

@@ -11,7 +11,7 @@ namespace app {
 /// Lines that begin with "# ", so that they can precede the resolved scene.
 std::string scene_summary(const Settings&);
 std::string trajectory_summary(const std::filesystem::path&);
-/// What a run says of its errors, in one line.
+/// What a run says of its errors, in one line; empty before its first step.
 std::string error_summary(const std::filesystem::path&);
 std::string picture_summary(const std::filesystem::path&);
 

@@ -22,7 +22,7 @@ double quadrature_error(Plans& plans, const Coefficients& position) {
   return largest;
 }
 
-ErrorStatement stated_errors(Plans& plans, std::span<const StepRecord> steps, const State& last) {
+ErrorStatement stated_errors(std::span<const StepRecord> steps) {
   ErrorStatement e;
   for (const StepRecord& step : steps) {
     e.time += step.error;
@@ -33,8 +33,6 @@ ErrorStatement stated_errors(Plans& plans, std::span<const StepRecord> steps, co
       e.volume = std::max(e.volume, std::abs(v.volume_error));
     }
   }
-  for (const VesicleState& v : last.vesicles)
-    e.quadrature = std::max(e.quadrature, quadrature_error(plans, v.position));
   return e;
 }
 

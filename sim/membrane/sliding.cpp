@@ -45,7 +45,7 @@ Coefficients sliding_velocity(const SlidingProblem& s, const Coefficients& guess
   const double enough = tolerance * tolerance * right.squaredNorm();
   constexpr int most = 300;
   double descent = product(rest, z);
-  for (int k = 0; k < most && rest.squaredNorm() > enough; ++k) {
+  for (int k = 0; k < most && descent > 0 && rest.squaredNorm() > enough; ++k) {
     const Matrix image = apply(direction);
     const double step = descent / product(direction, image);
     w += step * direction;

@@ -1,17 +1,14 @@
 #include "sim/stepping/bdf.h"
 
+#include "sim/core/parallel.h"
 #include "sim/membrane/sliding.h"
 #include "sim/stepping/multistep.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace sim {
 
 namespace {
-
-constexpr double four_pi = 4 * std::numbers::pi;
 
 std::vector<double> times_of(std::span<const Level> levels) {
   std::vector<double> times;
@@ -43,7 +40,7 @@ Outlook outlook(std::span<const Level> levels, const Frame& frame, int order, Ex
   o.sliding = combined(levels, weights(order), &Level::sliding);
   o.motion.velocity = combined(levels, weights(std::min(order + 1, most_guessed)), &Level::velocity);
   o.motion.velocity.values += frame_velocity(rigid_body(o.at), frame).values;
-  o.motion.tension = combined_tension(levels, weights(std::min(order + 1, most_guessed)));
+  o.motion.tension = combined(levels, weights(std::min(order + 1, most_guessed)), &Level::tension);
   return o;
 }
 
@@ -60,7 +57,7 @@ std::vector<Level> carried_levels(const VesicleDynamics& v, const Frame& frame, 
   const auto add = [&](const Coefficients& x, const Motion& motion, const Coefficients& sliding) {
     const Coefficients rest{x.order, motion.velocity.values - frame_velocity(rigid_body(x), frame).values};
     levels.push_back(
-        {time, carried(frame, -time, x), turned(frame, -time, rest), turned(frame, -time, sliding), &motion.tension});
+        {time, carried(frame, -time, x), turned(frame, -time, rest), turned(frame, -time, sliding), motion.tension});
   };
   add(v.position, v.motion, v.sliding);
   for (const PastLevel& past : v.history.levels) {
@@ -74,13 +71,6 @@ Coefficients combined(std::span<const Level> levels, std::span<const double> wei
   Coefficients sum = levels[0].*member;
   sum.values *= weights[0];
   for (std::size_t j = 1; j < weights.size(); ++j) sum.values += weights[j] * (levels[j].*member).values;
-  return sum;
-}
-
-Coefficients combined_tension(std::span<const Level> levels, std::span<const double> weights) {
-  Coefficients sum = *levels[0].tension;
-  sum.values *= weights[0];
-  for (std::size_t j = 1; j < weights.size(); ++j) sum.values += weights[j] * levels[j].tension->values;
   return sum;
 }
 
@@ -108,30 +98,30 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
   const double time = d.time + problem.dt;
   const int order = std::min<int>(wanted_order, int(d.vesicles.front().history.levels.size()) + 1);
 
-  std::vector<Outlook> expected;
-  std::vector<Coefficients> at, behind;
-  std::vector<Motion> guess;
-  double c = problem.dt;
-  for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
+  const int n = int(d.vesicles.size());
+  const double c = bdf(times_of(carried_levels(d.vesicles.front(), moving.front(), problem.dt)), order).c;
+
+  std::vector<Outlook> expected(n);
+  std::vector<Coefficients> at(n), behind(n);
+  std::vector<Motion> guess(n);
+  parallel_for(n, [&](int k) {
     const VesicleDynamics& v = d.vesicles[k];
     const std::vector<Level> levels = carried_levels(v, moving[k], problem.dt);
-    c = bdf(times_of(levels), order).c;
     // The instantaneous velocity of a sphere strains it: no prediction.
     const bool euler_predicts = extrapolation == Extrapolation::one_more && !is_sphere({v.area, v.volume});
-    expected.push_back(outlook(levels, moving[k], order, extrapolation, euler_predicts));
-    const Outlook& o = expected.back();
-    at.push_back(o.at);
-    behind.push_back({o.at.order, o.behind.values - o.at.values + c * o.sliding.values});
-    guess.push_back(o.motion);
-  }
+    const Outlook& o = expected[k] = outlook(levels, moving[k], order, extrapolation, euler_predicts);
+    at[k] = o.at;
+    behind[k] = {o.at.order, o.behind.values - o.at.values + c * o.sliding.values};
+    guess[k] = o.motion;
+  });
 
   const Suspension suspension = freeze(s, d, at, guess);
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity, behind);
   Attempt<SuspensionSolve> result = solve(s, suspension, c, r, guess, moving);
   if (!result) return result.rejection();
 
-  Advance a{{}, result->iterations, result->residual};
-  for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
+  Advance a{std::vector<Moved>(n), result->iterations, result->residual};
+  parallel_for(n, [&](int k) {
     const VesicleDynamics& v = d.vesicles[k];
     const Membrane& m = suspension.membranes[k];
     Motion& motion = result->motions[k];
@@ -139,17 +129,17 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
     Moved moved{{m.order(), expected[k].behind.values + c * u.values}, {}, {}, {}, {}, c, 0};
     moved.sliding = {m.order(), Matrix::Zero(u.values.rows(), 3)};
     if (slides) {
-      const double radius = std::sqrt(v.area / four_pi);
-      moved.sliding = sliding_velocity({m.bases.field, m.geometry, m.body, moved.position, u, radius, v.frame.drift, c},
-                                       expected[k].sliding, sliding_tolerance(s.scene));
+      moved.sliding = sliding_velocity(
+          {m.bases.field, m.geometry, m.body, moved.position, u, area_radius({v.area, v.volume}), v.frame.drift, c},
+          expected[k].sliding, sliding_tolerance(s.scene));
       moved.position.values += c * moved.sliding.values;
     }
     moved.frame = frame_of(m, motion.velocity, problem.flows, time);
     moved.motion = std::move(motion);
     moved.error = estimated_errors(v, problem.dt, moved.position, order).back();
     moved.history = pushed(v.history, {v.position, v.motion, v.sliding, problem.dt}, past_levels);
-    a.vesicles.push_back(std::move(moved));
-  }
+    a.vesicles[k] = std::move(moved);
+  });
   return a;
 }
 

@@ -34,13 +34,12 @@ struct Level {
   Coefficients position;  ///< where the frame has carried it
   Coefficients velocity;  ///< relative to the frame, turned with it
   Coefficients sliding;   ///< likewise
-  const Coefficients* tension = nullptr;
+  Coefficients tension;
 };
 /// The present and the past of a vesicle, the latest first, at a time so much after the present.
 std::vector<Level> carried_levels(const VesicleDynamics&, const Frame&, double later);
 /// sum_j weight_j member_j over the first levels.
 Coefficients combined(std::span<const Level>, std::span<const double> weights, Coefficients Level::*member);
-Coefficients combined_tension(std::span<const Level>, std::span<const double> weights);
 
 /// How the grid slides in a step over dt from `before` that led to a position: times relative to the end of the step.
 SlidingPath sliding_path(const VesicleDynamics& before, double dt, const Coefficients& position,

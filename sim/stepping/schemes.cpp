@@ -133,4 +133,6 @@ const Scheme& scheme_of(const Scene& scene) {
   return row->function;
 }
 
+bool grid_slides(const Scene& scene) { return scheme_of(scene).slides && scene.numerics.reparametrization == "moving"; }
+
 }  // namespace sim

@@ -27,5 +27,8 @@ const std::vector<CatalogueRow<Scheme>>& scheme_catalogue();
 std::string_view scheme_name(const Scene&);
 /// Its row; throws std::invalid_argument where there is none of that name.
 const Scheme& scheme_of(const Scene&);
+/// Whether the grid slides along the membrane as part of each step; where the scheme cannot do so, it is relabelled
+/// when needed.
+bool grid_slides(const Scene&);
 
 }  // namespace sim

@@ -104,9 +104,8 @@ TrajectoryLayout layout_for(const Scene& scene, const Dynamics& d) {
     layout.label_order = std::max(layout.label_order, v.labels.order);
     layout.tracers = int(v.tracers.rows());
   }
-  // How many steps a tolerance takes is not known; the file grows.
-  const double steps =
-      steps_adapt(scene.time) ? std::min(20 * scene.time.end, 1000.) : std::ceil(scene.time.end / longest_step(scene));
+  // How many steps a tolerance takes is not known: room as for saved states, and the file grows.
+  const double steps = steps_adapt(scene.time) ? 0 : std::ceil(scene.time.end / longest_step(scene));
   const std::optional<double> every = save_interval(scene.time);
   const double saved = every ? std::ceil(scene.time.end / *every) : steps;
   layout.states = std::int64_t(std::min(saved, 1e6)) + 2;
@@ -202,10 +201,11 @@ class Run {
     const Dynamics before = std::exchange(d_, std::move(step->dynamics));
     records_.push_back(step->record);
     if (observer_.on_step) observer_.on_step(d_, step->record);
-    if (adapts)
-      save_between(before);
-    else if (!scene_.time.save_every || d_.time == due)
+    if (adapts) {
+      if (auto rejection = save_between(before)) return rejection;
+    } else if (d_.time == due) {
       if (auto rejection = save()) return rejection;
+    }
     if (d_.time == switched)
       if (auto rejection = begin_anew()) return rejection;
     warn_of_shapes();
@@ -263,11 +263,14 @@ class Run {
   }
 
   /// All states that are due in the last step.
-  void save_between(const Dynamics& before) {
+  std::optional<Rejection> save_between(const Dynamics& before) {
     for (double time = save_time(scene_, before.time); time <= d_.time; time = save_time(scene_, time)) {
-      append(interpolated(model_, before, d_, time));
+      const Attempt<State> state = interpolated(model_, before, d_, time);
+      if (!state) return state.rejection();
+      append(*state);
       if (time == scene_.time.end) break;
     }
+    return std::nullopt;
   }
 
   void append(const State& state) {

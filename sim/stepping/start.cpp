@@ -97,14 +97,13 @@ double first_adaptive_step(const Model& s, const Dynamics& d) {
 double fastest_motion(const Dynamics& d) {
   double rate = 0;
   for (const VesicleDynamics& v : d.vesicles)
-    rate = std::max(rate, motion_rate(v.motion.velocity, std::sqrt(v.area / four_pi)));
+    rate = std::max(rate, motion_rate(v.motion.velocity, area_radius({v.area, v.volume})));
   return rate;
 }
 
 bool any_sphere(const Dynamics& d) {
-  return std::any_of(d.vesicles.begin(), d.vesicles.end(), [](const VesicleDynamics& v) {
-    return is_sphere({v.area, v.volume});
-  });
+  const std::vector<AreaVolume> all = sizes(d);
+  return std::any_of(all.begin(), all.end(), is_sphere);
 }
 
 double longest_adaptive_step(const Model& s, const Dynamics& d) {

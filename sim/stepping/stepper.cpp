@@ -3,7 +3,6 @@
 #include "sim/core/parallel.h"
 #include "sim/measures/diagnostics.h"
 #include "sim/sphere/norms.h"
-#include "sim/surface/correction.h"
 #include "sim/surface/dealias.h"
 #include "sim/suspension/gap.h"
 
@@ -47,12 +46,10 @@ bool relabelling_due(const std::string& mode, const VesicleDynamics& v) {
 
 /// Shifts x to the area and volume of the start; the longest shift.
 Attempt<double> correct(const Model& s, VesicleDynamics& v, const Geometry& g) {
-  const Correction c = is_sphere({v.area, v.volume}) ? volume_correction(s.plans, v.position, g, v.area, v.volume)
-                                                     : area_volume_correction(s.plans, v.position, g, v.area, v.volume);
-  if (!c.converged || c.largest > 0.1 * std::sqrt(v.area / four_pi))
-    return Rejection{fmt::format("the area and volume correction failed (shift {:.1e})", c.largest)};
-  v.position.values += c.shift.values;
-  return c.largest;
+  const Attempt<Correction> c = correction_of(s, v, v.position, g);
+  if (!c) return c.rejection();
+  v.position.values += c->shift.values;
+  return c->largest;
 }
 
 /// Why a step must not have led to this geometry, if so.
@@ -126,7 +123,7 @@ Attempt<Finished> finish_vesicle(const Model& s, VesicleDynamics& v, Moved moved
   else
     finished.errors = {moved.error};
   const double time = all.time;
-  if (scheme.slides && n.reparametrization == "moving") {
+  if (grid_slides(s.scene)) {
     slide(s, before, dt, time, v);
   } else if (relabelling_due(n.reparametrization, v) && relabel_vesicle(s, v)) {
     record.relabelled = 1;

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double four_pi = 4 * std::numbers::pi;
 
-double area_radius(const AreaVolume& size) { return std::sqrt(size.area / four_pi); }
-
 }  // namespace
+
+double area_radius(const AreaVolume& size) { return std::sqrt(size.area / four_pi); }
 
 double straining_rate(Plans& plans, std::span<const FlowParameters> flows, const Vec3& gravity,
                       std::span<const Material> materials, std::span<const Coefficients> positions,

@@ -31,7 +31,8 @@ std::vector<std::optional<PinnedTension>> pinned_tensions(Plans&, std::span<cons
                                                           std::span<const Coefficients> positions,
                                                           std::span<const AreaVolume> sizes);
 
-/// Smallest area radius.
+/// R0 = sqrt(A / 4 pi), and the smallest of several.
+double area_radius(const AreaVolume&);
 double smallest_radius(std::span<const AreaVolume> sizes);
 
 /// Geometry and operators of all vesicles at x*; expected tensions: see freeze_membrane().

@@ -461,6 +461,26 @@ TEST_CASE("a forged resume record ends --resume with one sentence, and the file 
   }
 }
 
+TEST_CASE("info tells what it knows of a trajectory whose last state is damaged, and which state that is",
+          "[hostile]") {
+  const support::TemporaryFolder folder;
+  const fs::path path = folder / "t.h5";
+  copy_original(path);
+  const Outcome whole = original()({"info", path.string()});
+  CHECK_THAT(whole.out, Contains("errors     position") && Contains("double layer of rigid motions"));
+  {
+    const sim::file::Descriptor file(path, true);
+    const sim::file::Place place = sim::file::map(file)->at("position");
+    const double wrong = 7;
+    file.write(place.offset + 10 * place.row_bytes, &wrong, sizeof wrong);
+  }
+  const Outcome outcome = original()({"info", path.string()});
+  INFO(outcome.err);
+  CHECK(outcome.status == 0);
+  CHECK_THAT(outcome.out, Contains("damaged    state 10") && Contains("errors     position") && Contains("[time]"));
+  CHECK_THAT(outcome.out, !Contains("double layer"));
+}
+
 TEST_CASE("a state whose checksum fits but whose numbers do not is told as damaged", "[hostile]") {
   const support::TemporaryFolder folder;
   const fs::path path = folder / "t.h5";

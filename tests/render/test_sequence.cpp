@@ -49,6 +49,30 @@ double largest(const sim::Matrix& m) { return m.cwiseAbs().maxCoeff(); }
 
 }  // namespace
 
+TEST_CASE("points that slide move by velocity and sliding together, and take labels and dots halfway with them") {
+  // Points at x(s, t) = s + t (a + b), of which b is their sliding along the membrane.
+  const Vec3 a(1, 0, 0.5), b(0, 0.25, 0);
+  auto [first, second] = two_states([&](const Vec3& s, double t) -> Vec3 { return s + t * (a + b); },
+                                    [&](const Vec3&, double) -> Vec3 { return a + b; }, 0, 0.4);
+  sim::VesicleState &before = first.vesicles[0], &after = second.vesicles[0];
+  const auto uniform = [](const Vec3& v) { return surfaces::coefficients(8, [&](const Vec3&) { return v; }); };
+  before.velocity = after.velocity = uniform(a);
+  before.sliding = after.sliding = uniform(b);
+  after.labels.values *= 3;
+  after.tracers.row(0) = Vec3(0, 1, 0).transpose();
+  before.tracers.row(0) = Vec3(1, 0, 0).transpose();
+  const sim::VesicleState between = render::interpolated(first, second, 0.2).vesicles[0];
+  CHECK(largest(between.velocity.values - uniform(a).values) < 1e-13);
+  CHECK(largest(between.sliding.values - uniform(b).values) < 1e-15);
+  CHECK(largest(between.labels.values - 2 * before.labels.values) < 1e-15);
+  CHECK(largest(between.tracers.row(0) - Vec3(1, 1, 0).normalized().transpose()) < 1e-15);
+  // Labels that are laid anew in between stay those of before, and what is relabelled is known at its end only.
+  after.labels_laid = 1;
+  CHECK(largest(render::interpolated(first, second, 0.2).vesicles[0].labels.values - before.labels.values) < 1e-15);
+  after.relabelled = 1;
+  CHECK(largest(render::interpolated(first, second, 0.2).vesicles[0].labels.values - after.labels.values) < 1e-15);
+}
+
 TEST_CASE("a motion that is cubic in time is interpolated exactly, and so is its velocity") {
   const auto x = [](const Vec3& s, double t) -> Vec3 {
     return s + t * Vec3(1, 0, s.z()) + t * t * Vec3(s.x() * s.y(), 0, 1) - t * t * t * Vec3(0, s.z() * s.z(), s.x());

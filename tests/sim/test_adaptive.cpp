@@ -1,5 +1,6 @@
 // Steps that follow a tolerance, formulas of high order, saved states between steps, and grids that slide.
 #include "../support/temporary_folder.h"
+#include "sim/measures/statement.h"
 #include "sim/membrane/sliding.h"
 #include "sim/stepping/control.h"
 #include "sim/stepping/multistep.h"
@@ -269,4 +270,54 @@ TEST_CASE("a grid that slides leaves the shape alone and keeps the high degrees 
   // Both have errors of space of this size at order 8.
   CHECK(inclination(ma.moments) == Approx(inclination(mb.moments)).margin(0.2 * std::numbers::pi / 180));
   CHECK(ma.h_squared == Approx(mb.h_squared).epsilon(5e-3));
+}
+
+TEST_CASE("little viscosity inside asks for tighter solves, not for shorter steps") {
+  // The volume answers to a residual by one over the contrast. With a residual as for equal viscosities the steps are
+  // ten times as many.
+  const Outcome equal = run(shear_of(1e-3, 2, 1)), thin = run(shear_of(1e-3, 2, 0.01));
+  REQUIRE(thin.outcome.end == SimulationEnd::finished);
+  CHECK(thin.steps.size() < 4 * equal.steps.size());
+  for (const StepRecord& step : thin.steps) CHECK(step.residual <= 1e-6);
+  Scene scene = shear_of(1e-3, 2, 0.01);
+  CHECK(solve_tolerance(scene) == Approx(1e-6));
+  scene.numerics.gmres_tolerance = 1e-4;
+  CHECK(solve_tolerance(scene) == 1e-4);
+}
+
+TEST_CASE("fifty steps of which a million would not reach the end are called a stall, and one longer step is none") {
+  Plans plans;
+  const Scene scene = shear_of(1e-3, 1, 1);
+  const Model s = make_model(scene, plans);
+  Step step{initial_dynamics(s), {}, {}};
+  step.record.dt = 1e-7;
+  for (int k = 1; k < 50; ++k) CHECK_FALSE(stalls(s, step));
+  CHECK(stalls(s, step));
+  step.record.dt = 1e-5;
+  CHECK_FALSE(stalls(s, step));
+  step.record.dt = 1e-7;
+  CHECK_FALSE(stalls(s, step));
+}
+
+TEST_CASE("a run states the sum of what its steps leave, the worst of the rest, and how good its quadrature is") {
+  StepRecord a, b;
+  a.error = 1e-4, a.residual = 1e-6, b.error = 2e-4, b.residual = 3e-6;
+  a.vesicles = {{.area_error = -1e-9, .volume_error = 1e-12, .tail = 0.02}, {.area_error = 1e-10, .tail = 0.03}};
+  b.vesicles = {{.volume_error = -2e-12, .tail = 0.01}, {}};
+  const std::vector<StepRecord> steps{a, b};
+  const ErrorStatement e = stated_errors(steps);
+  CHECK(e.time == Approx(3e-4));
+  CHECK(e.solve == 3e-6);
+  CHECK(e.area == 1e-9);
+  CHECK(e.volume == 2e-12);
+  CHECK(e.space == 0.03);
+  // It falls spectrally, and knows neither place nor size.
+  Plans plans;
+  const Coefficients coarse = initial_position(test::vesicle("prolate", 0.85, 8));
+  Coefficients elsewhere = coarse;
+  elsewhere.values *= 1e-6;
+  elsewhere.values.row(0).array() += 1e-4;
+  const double error = quadrature_error(plans, coarse);
+  CHECK(quadrature_error(plans, elsewhere) == Approx(error).epsilon(1e-6));
+  CHECK(quadrature_error(plans, initial_position(test::vesicle("prolate", 0.85, 12))) < error / 5);
 }
