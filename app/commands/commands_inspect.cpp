@@ -1,9 +1,9 @@
 // Commands that only look: info, export, list.
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
-#include "app/base/owned_files.h"
 #include "app/base/printable.h"
 #include "app/base/progress.h"
+#include "app/base/result_files.h"
 #include "app/commands/commands.h"
 #include "app/export/csv.h"
 #include "app/export/mesh_export.h"

@@ -4,6 +4,7 @@
 #include "app/base/message.h"
 #include "app/base/owned_files.h"
 #include "app/base/printable.h"
+#include "app/base/result_files.h"
 #include "app/commands/commands.h"
 #include "app/figures/figures.h"
 #include "app/pictures/frames.h"

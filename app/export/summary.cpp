@@ -5,6 +5,7 @@
 #include "app/scene/scene_text.h"
 
 #include "render/image/image.h"
+#include "sim/core/derived.h"
 #include "sim/measures/statement.h"
 #include "sim/trajectory/trajectory.h"
 

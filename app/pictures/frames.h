@@ -3,6 +3,7 @@
 
 #include "app/base/options.h"
 #include "app/base/owned_files.h"
+#include "app/base/result_files.h"
 #include "app/pictures/pictures.h"
 
 namespace app {

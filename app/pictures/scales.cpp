@@ -1,5 +1,6 @@
 #include "app/pictures/scales.h"
 
+#include "sim/core/derived.h"
 #include "sim/membrane/flows.h"
 
 #include <algorithm>

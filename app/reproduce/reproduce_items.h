@@ -3,8 +3,8 @@
 
 #include "app/base/interrupt.h"
 #include "app/base/options.h"
-#include "app/base/owned_files.h"
 #include "app/base/progress.h"
+#include "app/base/result_files.h"
 #include "app/reproduce/reproduce_report.h"
 
 #include "sim/core/parameters.h"

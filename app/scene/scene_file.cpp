@@ -7,6 +7,7 @@
 #include "app/scene/scene_values.h"
 
 #include "render/core/palette.h"
+#include "sim/core/derived.h"
 #include "sim/core/digits.h"
 #include "sim/core/input_file.h"
 #include "sim/surface/shapes.h"

@@ -9,7 +9,6 @@
 
 #include "sim/core/types.h"
 
-#include <algorithm>
 #include <array>
 #include <concepts>
 #include <limits>
@@ -91,10 +90,10 @@ struct TimeParameters {
   std::optional<double> tolerance;    ///< of adaptive steps
   std::optional<double> step;         ///< of fixed ones
   std::optional<std::string> scheme;  ///< not given: bdf2 where a step is given, adaptive otherwise
-  std::optional<double> save_every;   ///< not given: save_interval()
+  std::optional<double> save_every;   ///< not given: see derived.h
 };
-/// Tolerance where neither it nor a step is given; steps whose error is below the least are rounding and residuals.
-inline constexpr double default_tolerance = 1e-3, least_tolerance = 1e-6;
+/// Errors of steps below it are rounding and residuals.
+inline constexpr double least_tolerance = 1e-6;
 
 template <class P, class V>
 requires std::same_as<std::remove_const_t<P>, TimeParameters>
@@ -473,28 +472,6 @@ struct Scene {
   NumericsParameters numerics;
   BuoyancyParameters buoyancy;
 };
-
-/// Whether steps follow a tolerance.
-inline bool steps_adapt(const TimeParameters& time) { return time.scheme ? *time.scheme == "adaptive" : !time.step; }
-inline double tolerance_of(const TimeParameters& time) { return time.tolerance.value_or(default_tolerance); }
-/// Time between saved states, which are at its multiples; adaptive steps are no frames of a movie. None: there is no
-/// time.
-inline std::optional<double> save_interval(const TimeParameters& time) {
-  constexpr double states = 200;
-  if (time.save_every || time.end == 0) return time.save_every;
-  return steps_adapt(time) ? time.end / states : time.step;
-}
-/// Relative residual of a linear solve: a hundredth of what a step may err leaves no trace, a tenth hardly one. The
-/// volume of a vesicle with little viscosity inside answers to a residual by one over its contrast.
-inline double solve_tolerance(const Scene& scene) {
-  if (scene.numerics.gmres_tolerance) return *scene.numerics.gmres_tolerance;
-  if (!steps_adapt(scene.time)) return 1e-10;
-  double tolerance = 0.1 * tolerance_of(scene.time);
-  for (const VesicleParameters& v : scene.vesicles)
-    tolerance = std::min(tolerance, 0.1 * tolerance_of(scene.time) * v.viscosity_contrast);
-  constexpr double least = 1e-11;
-  return std::max(tolerance, least);
-}
 
 /// A table of the scene file.
 struct Section {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/core/attempt.h"
+#include "sim/core/derived.h"
 #include "sim/stepping/dynamics.h"
 #include "sim/suspension/suspension.h"
 

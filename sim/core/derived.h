@@ -1,0 +1,36 @@
+// What follows from the parameters of a scene where keys are not given: the kind of steps, their tolerance, the times
+// of saved states, the residual of the solves.
+#pragma once
+
+#include "sim/core/parameters.h"
+
+#include <algorithm>
+
+namespace sim {
+
+/// Where neither a tolerance nor a step is given.
+inline constexpr double default_tolerance = 1e-3;
+
+/// Whether steps follow a tolerance.
+inline bool steps_adapt(const TimeParameters& time) { return time.scheme ? *time.scheme == "adaptive" : !time.step; }
+inline double tolerance_of(const TimeParameters& time) { return time.tolerance.value_or(default_tolerance); }
+/// Time between saved states, which are at its multiples; adaptive steps are no frames of a movie. None: there is no
+/// time.
+inline std::optional<double> save_interval(const TimeParameters& time) {
+  constexpr double states = 200;
+  if (time.save_every || time.end == 0) return time.save_every;
+  return steps_adapt(time) ? time.end / states : time.step;
+}
+/// Relative residual of a linear solve: a hundredth of what a step may err leaves no trace, a tenth hardly one. The
+/// volume of a vesicle with little viscosity inside answers to a residual by one over its contrast.
+inline double solve_tolerance(const Scene& scene) {
+  if (scene.numerics.gmres_tolerance) return *scene.numerics.gmres_tolerance;
+  if (!steps_adapt(scene.time)) return 1e-10;
+  double tolerance = 0.1 * tolerance_of(scene.time);
+  for (const VesicleParameters& v : scene.vesicles)
+    tolerance = std::min(tolerance, 0.1 * tolerance_of(scene.time) * v.viscosity_contrast);
+  constexpr double least = 1e-11;
+  return std::max(tolerance, least);
+}
+
+}  // namespace sim
