@@ -66,19 +66,12 @@ Eigen::Matrix3d mean_gradient(const RigidBody& b, const Coefficients& u) {
   return ((b.arm.values.transpose() * b.arm.values).ldlt().solve(b.arm.values.transpose() * u.values)).transpose();
 }
 
-Frame extrapolated(const Frame& a, const Frame& b, double share) {
-  const RigidMotion before = b.at(a.motion.centre);
-  return {{a.motion.translation + share * (a.motion.translation - before.translation),
-           a.motion.rotation + share * (a.motion.rotation - before.rotation), a.motion.centre},
-          a.drift};
-}
-
 namespace {
 
-Eigen::Matrix3d turn(const Frame& frame, double time) {
-  const double angle = frame.motion.rotation.norm() * time;
-  return angle == 0 ? Eigen::Matrix3d::Identity()
-                    : Eigen::AngleAxisd(angle, frame.motion.rotation.normalized()).toRotationMatrix();
+Eigen::Matrix3d turn(const Frame& frame, Span span) {
+  const Vec3 mean = frame.motion.rotation + (span.from + span.to) / 2 * frame.spin_up;
+  const double angle = mean.norm() * span.length();
+  return angle == 0 ? Eigen::Matrix3d::Identity() : Eigen::AngleAxisd(angle, mean.normalized()).toRotationMatrix();
 }
 
 /// exp(a), and its mean over the way, the integral of exp(a s) over s from 0 to 1: by their series for a/2^k, doubled k
@@ -106,17 +99,18 @@ Exponential exponential(const Eigen::Matrix3d& a) {
 
 }  // namespace
 
-Coefficients carried(const Frame& frame, double time, const Coefficients& x) {
+Coefficients carried(const Frame& frame, Span span, const Coefficients& x) {
+  const double time = span.length();
   const Vec3 centre = x.values.row(0).transpose() / constant;
-  Coefficients moved{x.order, x.values * turn(frame, time).transpose()};
+  Coefficients moved{x.order, x.values * turn(frame, span).transpose()};
   // centre' = V + drift (centre - where it is now), V its velocity now
   const Vec3 shift = exponential(frame.drift * time).mean * (time * frame.at(centre).translation);
   moved.values.row(0) = constant * (centre + shift).transpose();
   return moved;
 }
 
-Coefficients turned(const Frame& frame, double time, const Coefficients& u) {
-  return {u.order, u.values * turn(frame, time).transpose()};
+Coefficients turned(const Frame& frame, Span span, const Coefficients& u) {
+  return {u.order, u.values * turn(frame, span).transpose()};
 }
 
 }  // namespace sim

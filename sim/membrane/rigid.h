@@ -36,25 +36,33 @@ Coefficients without_rigid_part(const RigidBody&, const Coefficients& velocity);
 /// extrapolated frames make steps of nearly round vesicles unstable (nu = 0.999, lambda = 0.1). Velocity: points x 3.
 RigidMotion shape_motion(const RigidBody&, const Geometry&, const Matrix& velocity);
 
-/// A frame that moves with a vesicle: it rotates steadily, and its centre drifts like a point of a linear flow, along
-/// a straight line in shear and a circle in rotating fluid.
+/// A frame that moves with a vesicle: its rotation changes linearly with time, and its centre drifts like a point of a
+/// linear flow, along a straight line in shear and a circle in rotating fluid.
 struct Frame {
-  RigidMotion motion;                               ///< at its centre
+  RigidMotion motion;                               ///< at its centre, at time 0
   Eigen::Matrix3d drift = Eigen::Matrix3d::Zero();  ///< gradient of the flow: change of its velocity with position
+  Vec3 spin_up = Vec3::Zero();                      ///< change of its rotation with time
   /// The motion of the frame when its centre is elsewhere.
   RigidMotion at(const Vec3& place) const {
     return {motion.translation + drift * (place - motion.centre), motion.rotation, place};
+  }
+  /// With another time as its time 0.
+  Frame from(double time) const {
+    return {{motion.translation, motion.rotation + time * spin_up, motion.centre}, drift, spin_up};
   }
 };
 
 /// Gradient of the linear flow nearest to a velocity (3 fields) on the surface.
 Eigen::Matrix3d mean_gradient(const RigidBody&, const Coefficients& velocity);
 
-/// a + share (a - b), at the centre of a.
-Frame extrapolated(const Frame& a, const Frame& b, double share);
-
-/// Positions (3 fields) moved by a frame over a time, which may be negative; and vectors rotated by it.
-Coefficients carried(const Frame&, double time, const Coefficients& position);
-Coefficients turned(const Frame&, double time, const Coefficients& vectors);
+/// A span of time of a frame; it may go backwards.
+struct Span {
+  double from = 0, to = 0;
+  double length() const { return to - from; }
+};
+/// Positions (3 fields) moved by a frame; and vectors rotated by it, about the mean of its rotations at both ends:
+/// smooth in both, and as the frame moves where they meet.
+Coefficients carried(const Frame&, Span, const Coefficients& position);
+Coefficients turned(const Frame&, Span, const Coefficients& vectors);
 
 }  // namespace sim

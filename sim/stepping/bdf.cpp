@@ -51,13 +51,14 @@ double sliding_tolerance(const Scene& scene) {
 
 }  // namespace
 
-std::vector<Level> carried_levels(const VesicleDynamics& v, const Frame& frame, double later) {
+std::vector<Level> carried_levels(const VesicleDynamics& v, const Frame& frame, double present, double to) {
   std::vector<Level> levels;
-  double time = -later;
+  double time = present;
   const auto add = [&](const Coefficients& x, const Motion& motion, const Coefficients& sliding) {
-    const Coefficients rest{x.order, motion.velocity.values - frame_velocity(rigid_body(x), frame).values};
+    const Span span{time, to};
+    const Coefficients rest{x.order, motion.velocity.values - frame_velocity(rigid_body(x), frame.from(time)).values};
     levels.push_back(
-        {time, carried(frame, -time, x), turned(frame, -time, rest), turned(frame, -time, sliding), motion.tension});
+        {time - to, carried(frame, span, x), turned(frame, span, rest), turned(frame, span, sliding), motion.tension});
   };
   add(v.position, v.motion, v.sliding);
   for (const PastLevel& past : v.history.levels) {
@@ -76,7 +77,7 @@ Coefficients combined(std::span<const Level> levels, std::span<const double> wei
 
 std::vector<double> estimated_errors(const VesicleDynamics& before, double dt, const Coefficients& position,
                                      int most_order) {
-  const std::vector<Level> levels = carried_levels(before, before.frame, dt);
+  const std::vector<Level> levels = carried_levels(before, before.frame, 0, dt);
   if (levels.size() == 1) {
     const Matrix euler = levels[0].position.values + dt * (levels[0].velocity.values + levels[0].sliding.values);
     return {size_of(before, position.values - euler) / 2};
@@ -93,20 +94,21 @@ std::vector<double> estimated_errors(const VesicleDynamics& before, double dt, c
 Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapolation extrapolation, int past_levels) {
   const Model& s = problem.model;
   const Dynamics& d = problem.before;
-  const std::vector<Frame> moving = frames(d);
+  std::vector<Frame> moving;  // as they are at the new time
+  for (const VesicleDynamics& v : d.vesicles) moving.push_back(v.frame.from(problem.dt));
   const bool slides = s.scene.numerics.reparametrization == "moving";
   const double time = d.time + problem.dt;
   const int order = std::min<int>(wanted_order, int(d.vesicles.front().history.levels.size()) + 1);
 
   const int n = int(d.vesicles.size());
-  const double c = bdf(times_of(carried_levels(d.vesicles.front(), moving.front(), problem.dt)), order).c;
+  const double c = bdf(times_of(carried_levels(d.vesicles.front(), moving.front(), 0, problem.dt)), order).c;
 
   std::vector<Outlook> expected(n);
   std::vector<Coefficients> at(n), behind(n);
   std::vector<Motion> guess(n);
   parallel_for(n, [&](int k) {
     const VesicleDynamics& v = d.vesicles[k];
-    const std::vector<Level> levels = carried_levels(v, moving[k], problem.dt);
+    const std::vector<Level> levels = carried_levels(v, v.frame, 0, problem.dt);
     // The instantaneous velocity of a sphere strains it: no prediction.
     const bool euler_predicts = extrapolation == Extrapolation::one_more && !is_sphere({v.area, v.volume});
     const Outlook& o = expected[k] = outlook(levels, moving[k], order, extrapolation, euler_predicts);
@@ -135,6 +137,7 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
       moved.position.values += c * moved.sliding.values;
     }
     moved.frame = frame_of(m, motion.velocity, problem.flows, time);
+    moved.frame.spin_up = (moved.frame.motion.rotation - v.frame.motion.rotation) / problem.dt;
     moved.motion = std::move(motion);
     moved.error = estimated_errors(v, problem.dt, moved.position, order).back();
     moved.history = pushed(v.history, {v.position, v.motion, v.sliding, problem.dt}, past_levels);
@@ -147,7 +150,7 @@ SlidingPath sliding_path(const VesicleDynamics& before, double dt, const Coeffic
                          const Coefficients& sliding) {
   SlidingPath path{{0}, {position}, {sliding}};
   constexpr std::size_t enough = 2;
-  for (const Level& level : carried_levels(before, before.frame, dt)) {
+  for (const Level& level : carried_levels(before, before.frame, 0, dt)) {
     if (path.times.size() > enough) break;
     path.times.push_back(level.time);
     path.positions.push_back(level.position);

@@ -6,10 +6,10 @@
 // afterwards counts as a part of w: without it forces would be those of a place that is off by the shift, an error of
 // first order.
 //
-// Levels are seen from a frame that moves with the vesicle (rigid.h), steadily as at t_n: past positions are where it
-// carries them by the new time, and only the motion relative to it is discretised. Steady drift and rotation have no
-// error, whatever the step. A frame that is steady over all levels takes no order from a formula, as one that changes
-// its rate between them would.
+// Levels are seen from a frame that moves with the vesicle (rigid.h) as at t_n, its rotation changing as in the step
+// before: past positions are where it carries them by the new time, and only the motion relative to it is discretised.
+// Steady drift and rotation have no error, whatever the step. One smooth frame for all levels takes no order from a
+// formula, as one that changes between them would.
 #pragma once
 
 #include "sim/stepping/step_problem.h"
@@ -28,16 +28,17 @@ Attempt<Advance> bdf_step(const StepProblem&, int order, Extrapolation, int past
 std::vector<double> estimated_errors(const VesicleDynamics& before, double dt, const Coefficients& position,
                                      int most_order);
 
-/// What is known of a vesicle at one time, as a steady frame carries it to another.
+/// What is known of a vesicle at one time, as a frame carries it to another.
 struct Level {
   double time = 0;        ///< relative to the other
   Coefficients position;  ///< where the frame has carried it
-  Coefficients velocity;  ///< relative to the frame, turned with it
+  Coefficients velocity;  ///< relative to the frame there, turned with it
   Coefficients sliding;   ///< likewise
   Coefficients tension;
 };
-/// The present and the past of a vesicle, the latest first, at a time so much after the present.
-std::vector<Level> carried_levels(const VesicleDynamics&, const Frame&, double later);
+/// The present and the past of a vesicle, the latest first. The frame's own time is 0; `present` and `to` are those of
+/// the vesicle and of what is looked at.
+std::vector<Level> carried_levels(const VesicleDynamics&, const Frame&, double present, double to);
 /// sum_j weight_j member_j over the first levels.
 Coefficients combined(std::span<const Level>, std::span<const double> weights, Coefficients Level::*member);
 

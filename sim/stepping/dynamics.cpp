@@ -28,6 +28,7 @@ void transfer_frame(Archive& ar, F& frame) {
   for (auto* x : {&frame.motion.translation, &frame.motion.rotation, &frame.motion.centre})
     for (int k = 0; k < 3; ++k) ar((*x)[k]);
   for (int k = 0; k < 9; ++k) ar(frame.drift(k));
+  for (int k = 0; k < 3; ++k) ar(frame.spin_up[k]);
 }
 
 struct Writer {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace sim {
 
@@ -18,6 +19,9 @@ Geometry measured_geometry(Plans& plans, const Coefficients& x) {
 }
 
 namespace {
+
+/// Velocity of the points of the grid.
+Coefficients rate_of_points(const VesicleState& v) { return {v.velocity.order, v.velocity.values + v.sliding.values}; }
 
 /// What is saved of a vesicle that moves so.
 VesicleState saved_vesicle(const VesicleDynamics& v, bool first, const Basis& basis, const Geometry& g, Motion motion) {
@@ -37,7 +41,7 @@ VesicleState saved_vesicle(const VesicleDynamics& v, bool first, const Basis& ba
   out.relabelled = v.relabelled;
   out.labels_laid = v.labels_laid;
   out.labels_laid_time = v.labels_laid_time;
-  if (first) out.velocity_before.values = out.velocity.values + out.sliding.values;
+  if (first) out.velocity_before = rate_of_points(out);
   return out;
 }
 
@@ -72,52 +76,76 @@ Attempt<State> evaluate(const Model& s, const Dynamics& d) {
 
 namespace {
 
-/// One vesicle between two states of a run.
-Attempt<VesicleState> interpolated(const Model& s, const VesicleDynamics& before, const VesicleDynamics& after,
-                                   int points, double dt, double earlier) {
-  std::vector<Level> levels = carried_levels(after, before.frame, -earlier);
-  levels.resize(std::min(levels.size(), std::size_t(points)));
-  std::vector<double> times;
-  for (const Level& level : levels) times.push_back(level.time);
-  const std::vector<double> weights = lagrange(times, 0);
-  Coefficients x = combined(levels, weights, &Level::position);
-  if (s.scene.numerics.correction) {
-    const Attempt<Correction> correction = correction_of(s, after, x, measured_geometry(s.plans, x));
-    if (!correction) return correction.rejection();
-    x.values += correction->shift.values;
+/// One vesicle in the step that led from one state of a run to the next.
+struct Passage {
+  const Model& s;
+  const VesicleDynamics &before, &after;
+  int points;
+  double dt;
+  std::optional<SlidingPath> path;  ///< of a grid that slides
+  std::optional<LabelsBetween> labels;
+
+  Passage(const Model& model, const VesicleDynamics& from, const VesicleDynamics& to, int levels, double length)
+      : s(model), before(from), after(to), points(levels), dt(length) {
+    if (!grid_slides(s.scene)) return;
+    path = sliding_path(before, dt, after.position, after.sliding);
+    if (before.labels_laid == after.labels_laid) labels.emplace(s.plans, *path, before.labels, -dt, after.labels, 0);
   }
-  Motion motion{combined(levels, weights, &Level::velocity), combined(levels, weights, &Level::tension)};
-  motion.velocity.values += frame_velocity(rigid_body(x), before.frame).values;
-  VesicleState out = saved_vesicle(after, false, s.plans.basis(x.order, measure_order(x.order)),
-                                   measured_geometry(s.plans, x), std::move(motion));
-  out.position = std::move(x);
-  out.sliding = combined(levels, weights, &Level::sliding);
-  if (grid_slides(s.scene) && earlier > 0) {
-    const SlidingPath path = sliding_path(before, dt, after.position, after.sliding);
-    out.labels = slid_labels(s.plans, path, before.labels, -dt, -earlier);
-    out.tracers = slid_points(path, before.tracers, -dt, -earlier);
-    out.labels_laid = before.labels_laid;
-    out.labels_laid_time = before.labels_laid_time;
+
+  Attempt<VesicleState> at(double earlier) const {
+    std::vector<Level> levels = carried_levels(after, before.frame, dt, dt - earlier);
+    levels.resize(std::min(levels.size(), std::size_t(points)));
+    std::vector<double> times;
+    for (const Level& level : levels) times.push_back(level.time);
+    const std::vector<double> weights = lagrange(times, 0);
+    Coefficients x = combined(levels, weights, &Level::position);
+    if (s.scene.numerics.correction) {
+      const Attempt<Correction> correction = correction_of(s, after, x, measured_geometry(s.plans, x));
+      if (!correction) return correction.rejection();
+      x.values += correction->shift.values;
+    }
+    Motion motion{combined(levels, weights, &Level::velocity), combined(levels, weights, &Level::tension)};
+    motion.velocity.values += frame_velocity(rigid_body(x), before.frame.from(dt - earlier)).values;
+    VesicleState out = saved_vesicle(after, false, s.plans.basis(x.order, measure_order(x.order)),
+                                     measured_geometry(s.plans, x), std::move(motion));
+    out.position = std::move(x);
+    out.sliding = combined(levels, weights, &Level::sliding);
+    if (path && earlier > 0) {
+      out.labels = labels ? labels->at(-earlier) : slid_labels(s.plans, *path, before.labels, -dt, -earlier);
+      out.tracers = slid_points(*path, before.tracers, -dt, -earlier);
+      out.labels_laid = before.labels_laid;
+      out.labels_laid_time = before.labels_laid_time;
+    }
+    return out;
   }
-  return out;
-}
+};
 
 }  // namespace
 
-Attempt<State> interpolated(const Model& s, const Dynamics& before, const Dynamics& after, double time) {
-  return within_domain([&]() -> Attempt<State> {
-    const int n = int(after.vesicles.size());
-    std::vector<Attempt<VesicleState>> vesicles(n, Rejection{});
+Attempt<std::vector<State>> interpolated(const Model& s, const Dynamics& before, const Dynamics& after,
+                                         std::span<const double> times) {
+  return within_domain([&]() -> Attempt<std::vector<State>> {
+    const int n = int(after.vesicles.size()), count = int(times.size());
+    std::vector<std::vector<Attempt<VesicleState>>> vesicles(n);
     parallel_for(n, [&](int k) {
-      vesicles[k] = interpolated(s, before.vesicles[k], after.vesicles[k], points_between(before),
-                                 after.time - before.time, after.time - time);
+      const Passage passage(s, before.vesicles[k], after.vesicles[k], points_between(before), after.time - before.time);
+      for (const double time : times) vesicles[k].push_back(passage.at(after.time - time));
     });
-    State state{after.step, time, {}};
-    for (Attempt<VesicleState>& v : vesicles) {
-      if (!v) return v.rejection();
-      state.vesicles.push_back(std::move(*v));
+    std::vector<State> states;
+    for (int i = 0; i < count; ++i) {
+      states.push_back({after.step, times[i], {}});
+      for (int k = 0; k < n; ++k) {
+        if (!vesicles[k][i]) return vesicles[k][i].rejection();
+        VesicleState v = std::move(*vesicles[k][i]);
+        if (i > 0) {
+          const VesicleState& earlier = states[i - 1].vesicles[k];
+          v.position_before = earlier.position;
+          v.velocity_before = rate_of_points(earlier);
+        }
+        states.back().vesicles.push_back(std::move(v));
+      }
     }
-    return state;
+    return states;
   });
 }
 
@@ -141,8 +169,7 @@ void mark_saved(Dynamics& d, const State& state) {
   ++d.saves;
   for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
     d.vesicles[k].saved_position = state.vesicles[k].position;
-    d.vesicles[k].saved_velocity = state.vesicles[k].velocity;
-    d.vesicles[k].saved_velocity.values += state.vesicles[k].sliding.values;
+    d.vesicles[k].saved_velocity = rate_of_points(state.vesicles[k]);
   }
 }
 

@@ -15,9 +15,10 @@ Attempt<Correction> correction_of(const Model&, const VesicleDynamics&, const Co
 
 /// Velocity and tension that solve (3a)-(3b) at the present positions, and all else that is saved.
 Attempt<State> evaluate(const Model&, const Dynamics&);
-/// A state between two successive ones, or at the later: by the polynomials in time of the step that led from one to
+/// States between two successive ones, or at the later: by the polynomials in time of the step that led from one to
 /// the other, through one level more than its formula has, with area and volume corrected. No solve.
-Attempt<State> interpolated(const Model&, const Dynamics& before, const Dynamics& after, double time);
+Attempt<std::vector<State>> interpolated(const Model&, const Dynamics& before, const Dynamics& after,
+                                         std::span<const double> times);
 /// Takes velocity, tension, sliding and frames of a state of the present for what the next step starts from and
 /// expects.
 void expect(const Model&, Dynamics&, const State&);

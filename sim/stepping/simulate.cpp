@@ -264,11 +264,17 @@ class Run {
 
   /// All states that are due in the last step.
   std::optional<Rejection> save_between(const Dynamics& before) {
-    for (double time = save_time(scene_, before.time); time <= d_.time; time = save_time(scene_, time)) {
-      const Attempt<State> state = interpolated(model_, before, d_, time);
-      if (!state) return state.rejection();
-      append(*state);
-      if (time == scene_.time.end) break;
+    constexpr std::size_t at_once = 32;  // a step may hold more than fit into the memory
+    for (double time = save_time(scene_, before.time); time <= d_.time;) {
+      std::vector<double> times;
+      for (; time <= d_.time && times.size() < at_once; time = save_time(scene_, time)) {
+        times.push_back(time);
+        if (time == scene_.time.end) break;
+      }
+      const Attempt<std::vector<State>> states = interpolated(model_, before, d_, times);
+      if (!states) return states.rejection();
+      for (const State& state : *states) append(state);
+      if (times.back() == scene_.time.end) break;
     }
     return std::nullopt;
   }

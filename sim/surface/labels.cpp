@@ -82,29 +82,60 @@ Matrix runge_kutta(Matrix y, double from, double to, int steps, F&& f) {
 
 }  // namespace
 
-Coefficients slid_labels(Plans& plans, const SlidingPath& path, const Coefficients& labels, double from, double to) {
-  const int order = labels.order, grid = order + path.positions[0].order;  // products are analysed without aliasing
-  const Basis& of_labels = plans.basis(order, grid);
-  const Basis& of_position = plans.basis(path.positions[0].order, grid);
-  const auto rates_at = [&](double time) {
+namespace {
+
+/// The grid on which labels change: products are analysed without aliasing.
+struct LabelGrid {
+  const Basis& labels;
+  const Basis& position;
+
+  LabelGrid(Plans& plans, const SlidingPath& path, int order)
+      : labels(plans.basis(order, order + path.positions[0].order)),
+        position(plans.basis(path.positions[0].order, order + path.positions[0].order)) {}
+  /// Velocity of the grid over the parameters at a time.
+  Matrix velocity(const SlidingPath& path, double time) const {
     const Place place = at(path, time);
-    return parameter_velocity(of_position.slopes(place.position), of_position.synthesize(place.sliding).values);
-  };
+    return parameter_velocity(position.slopes(place.position), position.synthesize(place.sliding).values);
+  }
+  /// L' = w.grad L
+  Matrix change(const Matrix& w, const Matrix& values) const {
+    const FirstDerivatives slopes = labels.slopes({labels.order(), values});
+    const Matrix change = slopes.t.array().colwise() * w.col(0).array() + slopes.f.array().colwise() * w.col(1).array();
+    return labels.analyze(change).values;
+  }
+};
+
+}  // namespace
+
+Coefficients slid_labels(Plans& plans, const SlidingPath& path, const Coefficients& labels, double from, double to) {
+  const int order = labels.order;
+  const LabelGrid grid(plans, path, order);
+  const auto rates_at = [&](double time) { return grid.velocity(path, time); };
   const Matrix start = rates_at(from);
   const double fastest =
-      (start.col(0).cwiseAbs2() + start.col(1).cwiseProduct(of_labels.sin_theta()).cwiseAbs2()).maxCoeff();
+      (start.col(0).cwiseAbs2() + start.col(1).cwiseProduct(grid.labels.sin_theta()).cwiseAbs2()).maxCoeff();
   constexpr double stable = 2;  // of 2.8, for waves of the highest degree
   const int steps = std::max(1, int(std::ceil(std::sqrt(fastest) * std::abs(to - from) * order / stable)));
   // The stages fall on the ends and the middles of the steps.
   std::vector<Matrix> rates{start};
   for (int k = 1; k <= 2 * steps; ++k) rates.push_back(rates_at(from + (to - from) * k / (2 * steps)));
   return {order, runge_kutta(labels.values, from, to, steps, [&](double time, const Matrix& values) -> Matrix {
-            const Matrix& w = rates[std::size_t(std::lround((time - from) / (to - from) * 2 * steps))];
-            const FirstDerivatives slopes = of_labels.slopes({order, values});
-            const Matrix change =
-                slopes.t.array().colwise() * w.col(0).array() + slopes.f.array().colwise() * w.col(1).array();
-            return of_labels.analyze(change).values;
+            return grid.change(rates[std::size_t(std::lround((time - from) / (to - from) * 2 * steps))], values);
           })};
+}
+
+LabelsBetween::LabelsBetween(Plans& plans, const SlidingPath& path, Coefficients before, double from,
+                             Coefficients after, double to)
+    : before_(std::move(before)), after_(std::move(after)), from_(from), to_(to) {
+  const LabelGrid grid(plans, path, before_.order);
+  rate_before_ = grid.change(grid.velocity(path, from), before_.values);
+  rate_after_ = grid.change(grid.velocity(path, to), after_.values);
+}
+
+Coefficients LabelsBetween::at(double time) const {
+  const double length = to_ - from_, s = (time - from_) / length, r = 1 - s;  // Hermite's polynomials
+  return {before_.order, r * r * (1 + 2 * s) * before_.values + s * s * (1 + 2 * r) * after_.values +
+                             length * s * r * (r * rate_before_ - s * rate_after_)};
 }
 
 Matrix slid_points(const SlidingPath& path, const Matrix& parameters, double from, double to) {

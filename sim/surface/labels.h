@@ -30,6 +30,17 @@ struct SlidingPath {
 /// Labels after a time in which the grid slid over the material: L' = w.grad L. By the classical Runge-Kutta method, in
 /// as many steps as the grid moves by labels.
 Coefficients slid_labels(Plans&, const SlidingPath&, const Coefficients& labels, double from, double to);
+/// Labels between two times from those at both, for many: cubic in time, as L' says.
+class LabelsBetween {
+ public:
+  LabelsBetween(Plans&, const SlidingPath&, Coefficients before, double from, Coefficients after, double to);
+  Coefficients at(double time) const;
+
+ private:
+  Coefficients before_, after_;
+  Matrix rate_before_, rate_after_;
+  double from_, to_;
+};
 /// Parameters (rows of unit vectors) of material points after that time: s' = -w in the parameters.
 Matrix slid_points(const SlidingPath&, const Matrix& parameters, double from, double to);
 

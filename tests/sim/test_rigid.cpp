@@ -80,18 +80,29 @@ TEST_CASE("a velocity is its rigid part and a rest that has none, in any place")
 
 TEST_CASE("a frame carries positions as its equations of motion say") {
   const Coefficients x = initial_position(lone(1, 4, 0.1).vesicles[0]);
-  Frame f{{{1, 0.5, -2}, {0.3, -1.1, 0.4}, {2, 1, 0}}, {}};
+  Frame f{{{1, 0.5, -2}, {0.3, -1.1, 0.4}, {2, 1, 0}}, {}, {}};
   f.drift << 0.2, -0.5, 1, 0.3, 0, 0.1, -0.4, 0.6, -0.2;
   for (const double time : {1e-3, 0.7, -4.0}) {
     // d/dt of the carried position is the frame's motion where it is: central differences, whose error is of the order
     // of h^2.
     const double h = 1e-4;
-    const Coefficients now = carried(f, time, x);
+    const Coefficients now = carried(f, {0, time}, x);
     const RigidBody body = rigid_body(now);
-    const Matrix rate = (carried(f, time + h, x).values - carried(f, time - h, x).values) / (2 * h);
+    const Matrix rate = (carried(f, {0, time + h}, x).values - carried(f, {0, time - h}, x).values) / (2 * h);
     CHECK((rate - rigid_velocity(body, f.at(body.centre)).values).norm() < 1e-6 * (1 + rate.norm()));
-    CHECK((carried(f, -time, now).values - x.values).norm() < 1e-12 * (1 + now.values.norm()));
-    CHECK(turned(f, time, x).values.norm() == Approx(x.values.norm()).epsilon(1e-13));
+    // Of one whose rotation changes, at the beginning of a span: the axis may change in it.
+    Frame g = f;
+    g.spin_up = {-0.7, 0.2, 0.9};
+    const Matrix at_start = (carried(g, {time, time + h}, x).values - carried(g, {time, time - h}, x).values) / (2 * h);
+    const RigidBody there = rigid_body(x);
+    const RigidMotion then = g.from(time).at(there.centre);
+    CHECK((then.rotation - f.motion.rotation - time * g.spin_up).norm() < 1e-14);
+    CHECK((at_start - rigid_velocity(there, then).values).norm() < 1e-6 * (1 + at_start.norm()));
+    for (const Frame& frame : {f, g}) {
+      const Coefficients then_back = carried(frame, {time, 0.2}, carried(frame, {0.2, time}, x));
+      CHECK((then_back.values - x.values).norm() < 1e-12 * (1 + now.values.norm()));
+      CHECK(turned(frame, {0.2, time}, x).values.norm() == Approx(x.values.norm()).epsilon(1e-13));
+    }
   }
 }
 
