@@ -85,8 +85,9 @@ std::string scene_summary(const Settings& settings) {
                              : counted(intervals(scene.time.end, std::min(every, step)), "step"),
                       counted(states, "saved state"));
   for (const sim::VesicleParameters& v : scene.vesicles)
-    text += fmt::format("# vesicle: {}, order {}, viscosity contrast {}, bending modulus {}\n", v.shape, v.order,
-                        v.viscosity_contrast, v.bending_modulus);
+    text += fmt::format("# vesicle: {}, order {}, viscosity contrast {}, bending modulus {}\n", v.shape,
+                        v.order > 0 ? fmt::to_string(v.order) : std::string("auto"), v.viscosity_contrast,
+                        v.bending_modulus);
   text += fmt::format("# {} of {} x {}, {} per second\n", counted(frames, "frame"), settings.view.size[0],
                       settings.view.size[1], settings.movie.frame_rate);
   for (const auto& figure : settings.figures) text += fmt::format("# figure {}\n", figure.kind);
@@ -112,9 +113,10 @@ std::string quadrature_text(const sim::TrajectoryReader& trajectory, const sim::
 std::string error_line(const sim::TrajectoryReader& trajectory, const std::vector<sim::StepRecord>& steps) {
   const sim::ErrorStatement e = sim::stated_errors(steps);
   return fmt::format(
-      "position {:.1e} R0 by the steps; {}linear solves {:.1e}; area {:.1e}, volume {:.1e}; {:.2g} % of "
+      "position {:.1e} R0 by the steps{}; {}linear solves {:.1e}; area {:.1e}, volume {:.1e}; {:.2g} % of "
       "the curvature's spectrum in its tail",
-      e.time, quadrature_text(trajectory, steps.back()), e.solve, e.area, e.volume, 100 * e.space);
+      e.time, e.degrees > 0 ? fmt::format(", {:.1e} by the degrees", e.degrees) : std::string(),
+      quadrature_text(trajectory, steps.back()), e.solve, e.area, e.volume, 100 * e.space);
 }
 
 }  // namespace

@@ -222,6 +222,14 @@ struct Reader {
       if (n.source_order > 0 && n.source_order < v.order)
         fail_at(source_of(*table, "source_order"),
                 fmt::format("'source_order' must be at least the vesicles' order {}, not {}", v.order, n.source_order));
+    for (const sim::VesicleParameters& v : scene.vesicles)
+      if (n.source_order > 0 && sim::order_follows(scene.time, v) && n.source_order < n.most_order)
+        fail_at(source_of(*table, "source_order"),
+                fmt::format("'source_order' must be at least most_order = {} where an order is \"auto\", not {}",
+                            n.most_order, n.source_order));
+    if (n.least_order > n.most_order)
+      fail_at(source_of(*table, n.least_order != sim::NumericsParameters{}.least_order ? "least_order" : "most_order"),
+              fmt::format("'least_order' {} is above 'most_order' {}", n.least_order, n.most_order));
     if (n.repulsion_strength > 0 && !n.near_rule)
       fail_at(source_of(*table, "near_rule"), "the repulsion acts where the near rule does: it needs near_rule = true");
   }

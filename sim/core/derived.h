@@ -14,6 +14,11 @@ inline constexpr double default_tolerance = 1e-3;
 /// Whether steps follow a tolerance.
 inline bool steps_adapt(const TimeParameters& time) { return time.scheme ? *time.scheme == "adaptive" : !time.step; }
 inline double tolerance_of(const TimeParameters& time) { return time.tolerance.value_or(default_tolerance); }
+/// Whether the order of a vesicle follows the tolerance; an automatic one is fixed_order where steps are fixed.
+inline bool order_follows(const TimeParameters& time, const VesicleParameters& v) {
+  return v.order == 0 && steps_adapt(time);
+}
+inline constexpr int fixed_order = 8;
 /// Time between saved states, which are at its multiples; adaptive steps are no frames of a movie. None: there is no
 /// time.
 inline std::optional<double> save_interval(const TimeParameters& time) {

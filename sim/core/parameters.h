@@ -134,6 +134,8 @@ void visit(P& p, V&& v) {
     p.save_every);
 }
 
+inline constexpr int largest_vesicle_order = 64;
+
 struct VesicleParameters {
   std::string shape = "sphere";
   std::optional<double> reduced_volume;  ///< nu = 6 sqrt(pi) V / A^(3/2)
@@ -142,7 +144,7 @@ struct VesicleParameters {
   std::optional<double> radius;          ///< area radius, instead of area
   Vec3 center = Vec3::Zero();
   std::optional<Vec3> axis;       ///< symmetry axis of the shape; the grid's pole lies on it; any length but 0
-  int order = 8;                  ///< p
+  int order = 0;                  ///< p; 0: automatic
   double viscosity_contrast = 1;  ///< lambda = inside / outside
   double bending_modulus = 0.01;  ///< kappa_b of E = kappa_b oint H^2 dA (twice Helfrich's)
   double density_difference = 0;  ///< inside - outside
@@ -196,9 +198,11 @@ void visit(P& p, V&& v) {
     p.axis);
   v(Parameter{.name = "order",
               .unit = "",
-              .meaning = "p, highest degree of the spherical harmonics",
+              .meaning = "p, highest degree of the spherical harmonics; auto: as the tolerance asks, changing during a "
+                         "run; 8 with fixed steps",
               .minimum = 2,
-              .maximum = 64},
+              .maximum = largest_vesicle_order,
+              .zero_is_auto = true},
     p.order);
   v(Parameter{.name = "viscosity_contrast",
               .unit = "",
@@ -235,7 +239,8 @@ inline constexpr double default_gap_floor = 1e-3, default_repulsion_range = 0.05
 struct NumericsParameters {
   bool correction = true;
   std::string reparametrization = "moving";
-  int upsampling = 0;  ///< q / p of differentiation; 0: Algorithm 1 chooses per vesicle
+  int least_order = 6, most_order = 32;  ///< of vesicles whose order is automatic
+  int upsampling = 0;                    ///< q / p of differentiation; 0: Algorithm 1 chooses per vesicle
   double aliasing_tolerance = 1e-4;
   std::optional<double> gmres_tolerance;  ///< not given: a tenth of the time tolerance, 1e-10 for fixed steps
   int source_order = 0;                   ///< degree of the rotated source grids; 0: p + 1
@@ -266,6 +271,18 @@ void visit(P& p, V&& v) {
                          "step, or never",
               .choices = reparametrization_names},
     p.reparametrization);
+  v(Parameter{.name = "least_order",
+              .unit = "",
+              .meaning = "least order of vesicles whose order is \"auto\"",
+              .minimum = 2,
+              .maximum = largest_vesicle_order},
+    p.least_order);
+  v(Parameter{.name = "most_order",
+              .unit = "",
+              .meaning = "largest order of vesicles whose order is \"auto\"",
+              .minimum = 2,
+              .maximum = largest_vesicle_order},
+    p.most_order);
   v(Parameter{.name = "upsampling",
               .unit = "",
               .meaning = "grid factor of differentiation; auto: Algorithm 1, per vesicle",

@@ -27,11 +27,14 @@ ErrorStatement stated_errors(std::span<const StepRecord> steps) {
   for (const StepRecord& step : steps) {
     e.time += step.error;
     e.solve = std::max(e.solve, step.residual);
+    double degrees = 0;
     for (const VesicleStep& v : step.vesicles) {
+      degrees = std::max(degrees, v.space_error);
       e.space = std::max(e.space, v.tail);
       e.area = std::max(e.area, std::abs(v.area_error));
       e.volume = std::max(e.volume, std::abs(v.volume_error));
     }
+    e.degrees += degrees;
   }
   return e;
 }

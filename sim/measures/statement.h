@@ -9,9 +9,10 @@
 namespace sim {
 
 struct ErrorStatement {
-  double time = 0;   ///< what all steps leave in the position, added up, in area radii
-  double space = 0;  ///< share of the curvature's spectrum in its last quarter of degrees, largest of the run
-  double solve = 0;  ///< largest relative residual of a linear solve
+  double time = 0;     ///< what all steps leave in the position, added up, in area radii
+  double degrees = 0;  ///< what the degrees that vesicles lack leave, of the worst vesicle in each step, likewise
+  double space = 0;    ///< share of the curvature's spectrum in its last quarter of degrees, largest of the run
+  double solve = 0;    ///< largest relative residual of a linear solve
   double area = 0, volume = 0;  ///< largest relative errors
 };
 

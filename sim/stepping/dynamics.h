@@ -27,6 +27,7 @@ struct VesicleDynamics {
   double area = 0, volume = 0;  ///< A0, V0: of the initial surface as represented
   double energy = 0;            ///< E/(8 pi kappa) of x_n
   double tail = 0;              ///< share of the mean curvature's spectrum in its last quarter of degrees
+  double space_error = 0;       ///< estimated error of position that its degree leaves, a time, in area radii
   int upsampling = 2;
   std::int64_t upsampling_due = 0;  ///< step of the next run of Algorithm 1
   double high_share = 0;            ///< high-degree share of x after the last relabelling, the least since
@@ -63,6 +64,7 @@ void visit(Vesicle& v, F&& f) {
   f(Part::number, v.volume);
   f(Part::number, v.energy);
   f(Part::number, v.tail);
+  f(Part::number, v.space_error);
   f(Part::number, v.upsampling);
   f(Part::number, v.upsampling_due);
   f(Part::number, v.high_share);
@@ -82,8 +84,9 @@ inline constexpr int highest_order = 4;
 /// What adaptive steps remember of the past; the next step is as long as the limit of Dynamics.
 struct Control {
   int order = 1;
-  std::int64_t at_order = 0;  ///< accepted steps of that order
-  bool held = false;          ///< the last attempt failed: the step does not grow
+  std::int64_t at_order = 0;        ///< accepted steps of that order
+  bool held = false;                ///< the last attempt failed: the step does not grow
+  std::int64_t resolution_due = 0;  ///< step of the next estimate of what the degrees of the vesicles leave
 };
 
 struct Dynamics {
@@ -97,7 +100,7 @@ struct Dynamics {
 };
 
 /// Form of the resume record; a record of another version is refused.
-inline constexpr int resume_version = 3;
+inline constexpr int resume_version = 4;
 /// More levels than any scheme looks back.
 inline constexpr int most_past_levels = 8;
 

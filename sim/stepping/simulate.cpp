@@ -1,6 +1,6 @@
 #include "sim/stepping/simulate.h"
 
-#include "sim/stepping/control.h"
+#include "sim/stepping/resolution.h"
 
 #include <fmt/format.h>
 
@@ -153,7 +153,8 @@ Dynamics resumed(const TrajectoryWriter& file, const Scene& scene, const std::fi
   if (d.vesicles.size() != scene.vesicles.size())
     record.refuse(fmt::format("{} vesicles, the scene has {}", d.vesicles.size(), scene.vesicles.size()));
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
-    if (d.vesicles[k].position.order != scene.vesicles[k].order) record.refuse("an order is not that of the scene");
+    if (const int order = scene.vesicles[k].order; order > 0 && d.vesicles[k].position.order != order)
+      record.refuse("an order is not that of the scene");
   if (!file.holds(d.step, d.time, d.saves)) record.refuse("it does not belong to the states of the file");
   if (!possible_step(scene, d)) record.refuse("the scene allows no such step");
   return d;
@@ -198,6 +199,8 @@ class Run {
     Attempt<Step> step = adapts ? adaptive_step(model_, d_, std::min(scene_.time.end, switched), noting_)
                                 : fixed_step_with_retries(model_, d_, std::min(due, switched), noting_);
     if (!step) return step.rejection();
+    std::vector<SpaceError> space;
+    if (adapts && resolution_due(d_)) space = estimate_resolution(model_, d_, *step);
     const Dynamics before = std::exchange(d_, std::move(step->dynamics));
     records_.push_back(step->record);
     if (observer_.on_step) observer_.on_step(d_, step->record);
@@ -208,6 +211,7 @@ class Run {
     }
     if (d_.time == switched)
       if (auto rejection = begin_anew()) return rejection;
+    if (auto rejection = adapt_orders(before, step->record.dt, space)) return rejection;
     warn_of_shapes();
     if (clock_.due()) write_resume_point();
     model_.plans.forget_unused();
@@ -231,11 +235,11 @@ class Run {
  private:
   /// From the scene: the file gets its first state.
   void begin() {
-    d_ = initial_dynamics(model_);
+    d_ = resolved_start(model_);
     const TrajectoryHeader header{options_.scene_text, options_.program, options_.build, scene_warnings(model_, d_)};
     if (observer_.on_warning)
       for (const std::string& warning : header.warnings) observer_.on_warning(warning);
-    for (VesicleDynamics& v : d_.vesicles) v.warned = v.tail > scene_.numerics.tail_warning;
+    for (std::size_t k = 0; k < d_.vesicles.size(); ++k) d_.vesicles[k].warned = unresolved(model_, d_, k);
     const State first = evaluate(model_, d_).value();
     expect(model_, d_, first);
     start_steps(model_, d_);
@@ -253,6 +257,7 @@ class Run {
     if (observer_.on_ready) observer_.on_ready();
     if (options_.another_time && d_.time < scene_.time.end)
       file_->continue_as(options_.scene_text, layout_for(scene_, d_));
+    file_->make_room(layout_for(scene_, d_));  // a run may have been stopped just before
   }
 
   std::optional<Rejection> save() {
@@ -293,6 +298,15 @@ class Run {
     return std::nullopt;
   }
 
+  std::optional<Rejection> adapt_orders(const Dynamics& before, double dt, std::span<const SpaceError> errors) {
+    const std::vector<int> orders = orders_for(model_, before, dt, errors);
+    Attempt<Dynamics> changed = in_orders(model_, d_, orders);
+    if (!changed) return changed.rejection();
+    d_ = std::move(*changed);
+    file_->make_room(layout_for(scene_, d_));
+    return std::nullopt;
+  }
+
   void warn(const std::string& warning) {
     file_->note(warning);
     if (observer_.on_warning) observer_.on_warning(warning);
@@ -301,7 +315,7 @@ class Run {
   /// Once a vesicle and run: a shape may cross the bound often.
   void warn_of_shapes() {
     for (std::size_t k = 0; k < d_.vesicles.size(); ++k)
-      if (VesicleDynamics& v = d_.vesicles[k]; !v.warned && v.tail > scene_.numerics.tail_warning) {
+      if (VesicleDynamics& v = d_.vesicles[k]; !v.warned && unresolved(model_, d_, k)) {
         v.warned = true;
         warn(fmt::format("t = {:.6g}: {}", d_.time, resolution_warning(model_, d_, k)));
       }
@@ -346,7 +360,7 @@ Dynamics resume_point(const TrajectoryReader& file, const std::filesystem::path&
 Preview preview(const Scene& scene) {
   Plans plans;
   const Model model = make_model(scene, plans);
-  const Dynamics d = initial_dynamics(model);
+  const Dynamics d = resolved_start(model);
   return {evaluate(model, d).value(), scene_warnings(model, d)};
 }
 

@@ -130,17 +130,30 @@ void start_steps(const Model& s, Dynamics& d) {
   d.dt_limit = std::min(build_up, short_ones);
 }
 
-Dynamics initial_dynamics(const Model& s) {
+namespace {
+
+Coefficients starting_position(const Scene& scene, VesicleParameters v, int order) {
+  if (order > 0) v.order = order;
+  if (v.order == 0 && !order_follows(scene.time, v)) v.order = fixed_order;
+  if (v.order > 0) return initial_position(v);
+  const Coefficients x = initial_position(v);
+  v.order = std::clamp(x.order, scene.numerics.least_order, scene.numerics.most_order);
+  return v.order == x.order ? x : initial_position(v);
+}
+
+}  // namespace
+
+Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
   if (s.scene.vesicles.empty()) throw std::invalid_argument("the scene has no vesicle");
   Dynamics d;
   for (const VesicleParameters& parameters : s.scene.vesicles) {
     VesicleDynamics v;
-    v.position = initial_position(parameters);
+    v.position = starting_position(s.scene, parameters, orders.empty() ? 0 : orders[d.vesicles.size()]);
     const int p = v.position.order;
     if (const Measures given = measures(measured_geometry(s.plans, v.position)); is_sphere({given.area, given.volume}))
       make_round(v.position, given.volume);
     const int label_order = s.scene.numerics.label_order;
-    v.labels = fresh_labels(label_order > 0 ? label_order : std::max(2 * p, 24));
+    v.labels = fresh_labels(label_order > 0 ? label_order : automatic_label_order(p));
     v.tracers = tracer_directions();
     v.saved_position = v.position;
     visit(v, [&]<class Member>(Part part, Member& member) {  // fields that nothing is known of yet

@@ -11,8 +11,12 @@ inline constexpr std::int64_t upsampling_steps = 10;
 /// Fixed steps that have become shorter grow again after so many steps without a failure.
 inline constexpr std::int64_t calm_enough = 8;
 
-/// Initial state. Throws std::invalid_argument with one sentence when a vesicle cannot be made.
-Dynamics initial_dynamics(const Model&);
+/// Degree of the material labels of a vesicle where none is given.
+inline int automatic_label_order(int order) { return std::max(2 * order, 24); }
+
+/// Initial state, in the orders of the scene, or in others; an automatic order is that which the shape needs. Throws
+/// std::invalid_argument with one sentence when a vesicle cannot be made.
+Dynamics initial_dynamics(const Model&, std::span<const int> orders = {});
 
 /// Step of a scheme of fixed steps, and the longest it takes: a twentieth of a period where a flow oscillates.
 double fixed_step(const Scene&);

@@ -143,6 +143,8 @@ Attempt<Finished> finish_vesicle(const Model& s, VesicleDynamics& v, Moved moved
   record.energy = v.energy;
   record.upsampling = v.upsampling;
   record.tail = v.tail = curvature_tail(measured, now);
+  record.degree = p;
+  record.space_error = v.space_error * dt;
   return finished;
 }
 

@@ -6,13 +6,21 @@
 
 namespace sim {
 
+bool unresolved(const Model& s, const Dynamics& d, std::size_t k) {
+  const VesicleDynamics& v = d.vesicles[k];
+  const NumericsParameters& n = s.scene.numerics;
+  const bool rises = order_follows(s.scene.time, s.scene.vesicles[k]) && v.position.order < n.most_order;
+  return v.tail > n.tail_warning && !rises;
+}
+
 std::string resolution_warning(const Model& s, const Dynamics& d, std::size_t k) {
   const VesicleDynamics& v = d.vesicles[k];
+  const bool follows = order_follows(s.scene.time, s.scene.vesicles[k]);
   const auto [tail, bound] = told_apart(100 * v.tail, 100 * s.scene.numerics.tail_warning);
   return fmt::format(
       "vesicle {}: order {} does not resolve the shape well ({} % of the mean curvature's spectrum lies in its last "
-      "quarter; bound {} %); try order {}",
-      k, v.position.order, tail, bound, v.position.order * 3 / 2);
+      "quarter; bound {} %); try {} {}",
+      k, v.position.order, tail, bound, follows ? "numerics.most_order" : "order", v.position.order * 3 / 2);
 }
 
 namespace {
@@ -44,7 +52,7 @@ std::vector<std::string> scene_warnings(const Model& s, const Dynamics& d) {
           fmt::format("a flow oscillates {:.3g} times in a step of {:.3g}; steps of {:.3g} are taken, 20 a period",
                       step / (20 * longest), step, longest));
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
-    if (d.vesicles[k].tail > scene.numerics.tail_warning) warnings.push_back(resolution_warning(s, d, k));
+    if (unresolved(s, d, k)) warnings.push_back(resolution_warning(s, d, k));
   return warnings;
 }
 

@@ -5,6 +5,8 @@
 
 namespace sim {
 
+/// Whether the shape of vesicle k is not resolved by its order, and no higher one will come by itself.
+bool unresolved(const Model&, const Dynamics&, std::size_t k);
 /// The warning that vesicle k is not resolved by its order.
 std::string resolution_warning(const Model&, const Dynamics&, std::size_t k);
 /// All warnings about a scene before its first step: unresolved vesicles, flows that move nothing or vary faster than

@@ -210,7 +210,30 @@ const std::vector<CatalogueRow<ShapeFunction>>& shape_catalogue() {
   return table;
 }
 
+namespace {
+
+/// The least even order from 4 on that leaves so little of a shape.
+int order_of_shape(const Coefficients& c) {
+  constexpr int least = 4;
+  constexpr double negligible = 1e-4;
+  const auto degrees_from = [&](int n) {
+    return c.values.bottomRows(c.values.rows() - coefficient_count(n - 1)).norm();
+  };
+  int order = least;
+  while (order < c.order && degrees_from(order + 1) > negligible * degrees_from(1)) order += 2;
+  return order;
+}
+
+}  // namespace
+
 Coefficients initial_position(const VesicleParameters& v) {
+  if (v.order == 0) {
+    VesicleParameters ordered = v;
+    constexpr int enough = 32;
+    ordered.order = enough;
+    ordered.order = order_of_shape(initial_position(ordered));
+    return initial_position(ordered);
+  }
   const auto* row = find_row(shape_catalogue(), v.shape);
   if (!row)
     throw std::invalid_argument("unknown shape '" + v.shape + "'" + suggestion(v.shape, row_names(shape_catalogue())));

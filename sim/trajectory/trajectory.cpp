@@ -191,14 +191,20 @@ struct TrajectoryWriter::Impl {
 
   /// A new file with room for at least so much; used rows are copied, then it takes the old one's name.
   void grow(std::int64_t state_rows, std::int64_t step_rows, std::int64_t resume_numbers) {
-    rewrite(file.map.header, state_rows, step_rows, resume_numbers);
+    TrajectoryLayout room = file.map.layout;
+    room.states = std::max(room.states, state_rows);
+    room.steps = std::max(room.steps, step_rows);
+    room.resume = std::max(room.resume, resume_numbers);
+    rewrite(file.map.header, room);
   }
-  void rewrite(const TrajectoryHeader& header, std::int64_t state_rows, std::int64_t step_rows,
-               std::int64_t resume_numbers) {
-    TrajectoryLayout layout = file.map.layout;
-    layout.states = std::max(layout.states, state_rows);
-    layout.steps = std::max(layout.steps, step_rows);
-    layout.resume = std::max(layout.resume, resume_numbers);
+  void rewrite(const TrajectoryHeader& header, const TrajectoryLayout& room) {
+    const TrajectoryLayout former = file.map.layout;
+    TrajectoryLayout layout = former;
+    layout.states = std::max(layout.states, room.states);
+    layout.steps = std::max(layout.steps, room.steps);
+    layout.resume = std::max(layout.resume, room.resume);
+    layout.order = std::max(layout.order, room.order);
+    layout.label_order = std::max(layout.label_order, room.label_order);
     const std::filesystem::path path = file.path;
     Draft draft = file::draft(path);
     file::create(draft, path, layout, header);
@@ -214,9 +220,15 @@ struct TrajectoryWriter::Impl {
         done += part;
       }
     };
-    for (const rows::Column& c : rows::state_columns(layout)) copy(c.name, bits(states));
+    if (layout.order == former.order && layout.label_order == former.label_order) {
+      for (const rows::Column& c : rows::state_columns(layout)) copy(c.name, bits(states));
+      copy("checksum", bits(states));
+    } else {
+      for (std::int64_t k = 0; k < states; ++k)  // a damaged one has no checksum afterwards
+        if (file.intact_state(k))
+          larger.write_row(larger.state_places, "checksum", bits(k), rows::pack(file.state(k), layout));
+    }
     for (const rows::Column& c : rows::step_columns(layout)) copy(c.name, bits(steps));
-    copy("checksum", bits(states));
     copy("steps/checksum", bits(steps));
     copy("notes", file::note_rows);
     for (const char* counter : {"count", "steps/count", "notes_count"}) copy(counter, 1);
@@ -347,7 +359,14 @@ bool TrajectoryWriter::holds(std::int64_t step, double time, std::int64_t saves)
 void TrajectoryWriter::continue_as(std::string_view scene, const TrajectoryLayout& room) {
   TrajectoryHeader header = impl_->file.map.header;
   header.scene = scene;
-  impl_->rewrite(header, room.states, room.steps, room.resume);
+  impl_->rewrite(header, room);
+}
+
+void TrajectoryWriter::make_room(const TrajectoryLayout& room) {
+  const TrajectoryLayout& now = impl_->file.map.layout;
+  if (room.order <= now.order && room.label_order <= now.label_order) return;
+  impl_->settle_counters();
+  impl_->rewrite(impl_->file.map.header, room);
 }
 
 const TrajectoryHeader& TrajectoryWriter::header() const { return impl_->file.map.header; }

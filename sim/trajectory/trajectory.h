@@ -19,9 +19,10 @@
 
 namespace sim {
 
-/// Version of the file layout. Files of the first can be read, not continued: they lack the sliding of the grid, and
-/// the order and the error of steps, which are then zero.
-inline constexpr int trajectory_format = 2;
+/// Version of the file layout. Files of earlier ones can be read, not continued. The first lacks the sliding of the
+/// grid, and the order and the error of steps; the second the order of each vesicle in a step and the error that it
+/// leaves. They are then zero.
+inline constexpr int trajectory_format = 3;
 
 /// Highest order of any field or label in a file.
 inline constexpr int largest_order = 128;
@@ -29,7 +30,7 @@ inline constexpr int largest_order = 128;
 /// Sizes that are fixed for one file. States, steps and resume grow by themselves when they are exceeded.
 struct TrajectoryLayout {
   int vesicles = 1;
-  int order = 8;            ///< highest p that any vesicle may reach
+  int order = 8;            ///< room for fields of so high an order; it grows, too
   int label_order = 24;     ///< likewise of the labels
   int tracers = 14;         ///< dots of each vesicle
   std::int64_t states = 1;  ///< rows for saved states, state 0 included
@@ -49,6 +50,7 @@ struct TrajectoryHeader {
 /// Diagnostics of one vesicle after one step.
 struct VesicleStep {
   double area_error = 0, volume_error = 0, energy = 0, upsampling = 0, tail = 0, correction = 0, relabelled = 0;
+  double degree = 0, space_error = 0;
 };
 
 /// Diagnostics of one accepted step; steps are numbered from 1 (0: the initial state).
@@ -82,6 +84,9 @@ void visit(R& r, V&& v) {
   v("tail", "share of the mean curvature's spectrum in its tail", r.tail);
   v("correction", "largest shift of the area and volume correction", r.correction);
   v("relabelled", "1 when this step moved the grid points along the membrane", r.relabelled);
+  v("degree", "order of the vesicle in this step", r.degree);
+  v("space_error", "estimated error of position that the step leaves because of that order, in area radii",
+    r.space_error);
 }
 
 /// Whether this file is a trajectory of this program, damaged or not; false also when it does not exist or cannot be
@@ -117,6 +122,8 @@ class TrajectoryWriter {
   /// Continues with another scene and room for at least so many rows: the file is rewritten and then replaced
   /// atomically.
   void continue_as(std::string_view scene, const TrajectoryLayout& room);
+  /// Room for fields of higher orders: the file is rewritten and replaced likewise where it has none.
+  void make_room(const TrajectoryLayout& room);
 
   /// Appends records, then the state, and returns when both are committed. After a resume the steps between the
   /// resume payload and the end of the file are repeated: states and records not newer than the file's last are

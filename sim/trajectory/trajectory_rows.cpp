@@ -229,9 +229,11 @@ State unpack_state(const Words& words, const TrajectoryLayout& layout) {
 
 namespace {
 
-/// Files of the first format know less of a step.
+/// Files of earlier formats know less of a step.
 bool has_column(const TrajectoryLayout& layout, std::string_view name) {
-  return layout.format > 1 || (name != "order" && name != "error");
+  if (name == "order" || name == "error") return layout.format > 1;
+  if (name == "degree" || name == "space_error") return layout.format > 2;
+  return true;
 }
 
 }  // namespace
@@ -279,8 +281,9 @@ StepRecord unpack_step(const Words& words, const TrajectoryLayout& layout) {
   });
   for (std::size_t v = 0; v < record.vesicles.size(); ++v) {
     std::size_t column = 0;
-    visit(record.vesicles[v], [&](const char*, const char*, double& value) {
-      value = std::bit_cast<double>(words.at(start + column++ * record.vesicles.size() + v));
+    visit(record.vesicles[v], [&](const char* name, const char*, double& value) {
+      if (has_column(layout, name))
+        value = std::bit_cast<double>(words.at(start + column++ * record.vesicles.size() + v));
     });
   }
   return record;

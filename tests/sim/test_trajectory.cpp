@@ -133,6 +133,57 @@ TEST_CASE("a trajectory grows when more states, steps or resume numbers come tha
   for (int k = 0; k < 40; ++k) CHECK(same(reader.state(k), state(k)));
 }
 
+TEST_CASE("a trajectory makes room for higher orders and keeps what is in it", "[trajectory]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "t.h5";
+  TrajectoryLayout room = layout(8);
+  room.order = 9;
+  room.label_order = 20;
+  {
+    TrajectoryWriter writer = written(path, 3, 8);
+    TrajectoryReader reader(path);
+    writer.make_room(layout(8));  // there is
+    CHECK(reader.layout().order == 6);
+    writer.make_room(room);
+    State higher = state(3);
+    higher.vesicles[1].position = coefficients(9, 3, 1);
+    CHECK_THROWS(writer.append(higher));  // its other fields are not
+    higher = state(3);
+    for (Coefficients* c :
+         {&higher.vesicles[1].position, &higher.vesicles[1].velocity, &higher.vesicles[1].position_before,
+          &higher.vesicles[1].velocity_before, &higher.vesicles[1].sliding})
+      *c = coefficients(9, 3, 7);
+    higher.vesicles[1].tension = coefficients(9, 1, 8);
+    higher.vesicles[1].labels = coefficients(20, 3, 9);
+    writer.append(higher);
+    CHECK(reader.refresh() == 4);
+    CHECK(reader.layout().order == 9);
+    CHECK(reader.layout().label_order == 20);
+    for (int k = 0; k < 3; ++k) CHECK(same(reader.state(k), state(k)));
+    CHECK(same(reader.state(3), higher));
+    CHECK(reader.damaged().empty());
+    CHECK(reader.steps().size() == 20);
+    CHECK(reader.resume_payload() == payload(2));
+  }
+  // A damaged state stays one.
+  const TemporaryFolder other;
+  const auto damaged = other / "t.h5";
+  written(damaged, 3, 8);
+  std::string bytes = support::read_file(damaged);
+  const double x = state(1).vesicles[0].position.values(3, 1);
+  const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&x), sizeof x));
+  REQUIRE(at != std::string::npos);
+  bytes[at + 3] = char(bytes[at + 3] ^ 1);
+  support::write_file(damaged, bytes);
+  TrajectoryWriter writer = TrajectoryWriter::resume(damaged);
+  writer.make_room(room);
+  const TrajectoryReader reader(damaged);
+  CHECK(reader.damaged() == std::vector<std::int64_t>{1});
+  CHECK(same(reader.state(0), state(0)));
+  CHECK(same(reader.state(2), state(2)));
+  CHECK_THAT(message_of([&] { reader.state(1); }), Catch::Contains("damaged"));
+}
+
 TEST_CASE("a reader follows a trajectory that is being written", "[trajectory]") {
   const TemporaryFolder folder;
   TrajectoryWriter writer = written(folder / "t.h5", 2, 3);

@@ -1,0 +1,154 @@
+#include "sim/stepping/resolution.h"
+
+#include "sim/measures/diagnostics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace sim {
+
+namespace {
+
+constexpr int apart = 2;  ///< shapes that are symmetric about their centre have every other degree only
+constexpr int least_degree = 2;
+
+VesicleDynamics in_order(const VesicleDynamics& v, int order) {
+  VesicleDynamics changed = v;
+  visit(changed, [order]<class Member>(Part part, Member& member) {
+    if constexpr (std::is_same_v<Member, Coefficients>) {
+      if (part != Part::label) member = resized(member, order);
+    } else if constexpr (std::is_same_v<Member, History>) {
+      for (PastLevel& level : member.levels)
+        visit_level(level, [order]<class Field>(const char*, Field& field) {
+          if constexpr (std::is_same_v<Field, Coefficients>) field = resized(field, order);
+        });
+    }
+  });
+  return changed;
+}
+
+double normal_size(Plans& plans, const VesicleDynamics& v, const Matrix& difference) {
+  const Basis& basis = plans.basis(v.position.order, measure_order(v.position.order));
+  const Geometry g = geometry(basis, v.position);
+  const Matrix on_grid = basis.synthesize({v.position.order, difference}).values;
+  const Vector along = on_grid.cwiseProduct(g.n).rowwise().sum();
+  return std::sqrt(integrate(g, along.cwiseAbs2()) / v.area);
+}
+
+/// Velocities of all vesicles in the step with so many degrees less; nothing where there is no such step.
+std::vector<Coefficients> velocities_of_less(const Model& s, const Dynamics& before, double dt, int less) {
+  Dynamics d = before;
+  for (VesicleDynamics& v : d.vesicles) v = in_order(v, std::max(least_degree, v.position.order - less));
+  const auto flows = acting_flows(s.scene.flows, before.time, before.time + dt);
+  const Attempt<Advance> advance = within_domain([&] { return scheme_of(s.scene).advance({s, d, dt, flows}); });
+  std::vector<Coefficients> velocities;
+  if (!advance) return velocities;
+  for (std::size_t k = 0; k < before.vesicles.size(); ++k)
+    velocities.push_back(resized(advance->vesicles[k].motion.velocity, before.vesicles[k].position.order));
+  return velocities;
+}
+
+bool any_follows(const Scene& scene) {
+  return std::any_of(scene.vesicles.begin(), scene.vesicles.end(),
+                     [&](const VesicleParameters& v) { return order_follows(scene.time, v); });
+}
+
+/// How many degrees more the errors of a vesicle ask for, where so much is allowed. A change disturbs the next steps a
+/// little, so that there should be few.
+int more_degrees(const SpaceError& e, double allowed) {
+  constexpr double aim = 0.5, far_below = 0.1, slowest_decay = 0.6;
+  constexpr int most = 8;
+  if (e.lower < far_below * allowed) return -apart;
+  if (e.here <= allowed) return 0;
+  const double decay = std::min(e.here / e.lower, slowest_decay);
+  return std::min(most, apart * int(std::ceil(std::log(aim * allowed / e.here) / std::log(decay))));
+}
+
+}  // namespace
+
+std::vector<SpaceError> space_errors(const Model& s, const Dynamics& before, const Dynamics& after) {
+  const double dt = after.time - before.time;
+  const auto less = velocities_of_less(s, before, dt, apart), least = velocities_of_less(s, before, dt, 2 * apart);
+  if (less.empty() || least.empty()) return {};
+  std::vector<SpaceError> errors;
+  for (std::size_t k = 0; k < less.size(); ++k) {
+    const VesicleDynamics& v = after.vesicles[k];
+    const auto error = [&](const Coefficients& u) {
+      constexpr double stays = 0.1;  // measured: 0.02 to 0.2
+      return stays * normal_size(s.plans, v, v.motion.velocity.values - u.values) / area_radius({v.area, v.volume});
+    };
+    const double lower = error(less[k]), lowest = error(least[k]);
+    constexpr double usual = 0.5;  // where there are too few degrees to tell
+    const double decay = v.position.order - 2 * apart < least_degree || !(lowest > 0) ? usual : lower / lowest;
+    errors.push_back({lower * std::min(decay, 1.0), lower});
+  }
+  return errors;
+}
+
+bool resolution_due(const Dynamics& d) { return d.step >= d.control.resolution_due; }
+
+std::vector<SpaceError> estimate_resolution(const Model& s, const Dynamics& before, Step& step) {
+  step.dynamics.control.resolution_due = before.step + (any_follows(s.scene) ? 10 : 20);
+  std::vector<SpaceError> errors = space_errors(s, before, step.dynamics);
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    step.dynamics.vesicles[k].space_error = errors[k].here;
+    step.record.vesicles[k].space_error = errors[k].here * step.record.dt;
+  }
+  return errors;
+}
+
+std::vector<int> orders_for(const Model& s, const Dynamics& before, double dt, std::span<const SpaceError> errors) {
+  const NumericsParameters& n = s.scene.numerics;
+  const double allowed = allowed_error(s, before, dt) / dt;
+  std::vector<int> orders;
+  for (std::size_t k = 0; k < before.vesicles.size(); ++k) {
+    const int order = before.vesicles[k].position.order;
+    const bool follows = order_follows(s.scene.time, s.scene.vesicles[k]) && k < errors.size();
+    orders.push_back(follows ? std::clamp(order + more_degrees(errors[k], allowed), n.least_order, n.most_order)
+                             : order);
+  }
+  return orders;
+}
+
+Attempt<Dynamics> in_orders(const Model& s, const Dynamics& d, std::span<const int> orders) {
+  Dynamics changed = d;
+  for (std::size_t k = 0; k < orders.size(); ++k) {
+    VesicleDynamics& v = changed.vesicles[k];
+    if (v.position.order == orders[k]) continue;
+    const bool loses = orders[k] < v.position.order;
+    v = in_order(v, orders[k]);
+    if (loses && s.scene.numerics.correction) {
+      const Attempt<Correction> c = correction_of(s, v, v.position, measured_geometry(s.plans, v.position));
+      if (!c) return c.rejection();
+      v.position.values += c->shift.values;
+    }
+    if (s.scene.numerics.label_order == 0)
+      v.labels = resized(v.labels, std::max(v.labels.order, automatic_label_order(orders[k])));
+    v.upsampling_due = d.step;
+  }
+  return changed;
+}
+
+Dynamics resolved_start(const Model& s) {
+  Dynamics d = initial_dynamics(s);
+  if (!any_follows(s.scene)) return d;
+  for (;;) {
+    Dynamics moving = d;
+    const Attempt<State> first = evaluate(s, d);
+    if (!first) return d;
+    expect(s, moving, *first);
+    start_steps(s, moving);
+    const double dt = std::min(moving.dt_limit, next_switch(s.scene.flows, d.time) - d.time);
+    if (!(dt > 0) || !std::isfinite(dt)) return d;
+    const Attempt<Step> step = take_step(s, moving, dt);
+    if (!step) return d;
+    const std::vector<int> orders = orders_for(s, moving, dt, space_errors(s, moving, step->dynamics));
+    bool higher = false;
+    for (std::size_t k = 0; k < orders.size(); ++k) higher = higher || orders[k] > d.vesicles[k].position.order;
+    if (!higher) return d;
+    d = initial_dynamics(s, orders);
+  }
+}
+
+}  // namespace sim
