@@ -50,14 +50,17 @@ bool says_nothing(const ResultValues& result, const std::vector<StudyRun>& runs)
 
 void add_findings(Study& study, const std::vector<std::string>& programs) {
   const StudyRun& last = study.runs.back();
-  const bool limit = study.shapes.limit.has_value();
+  const Convergence& shapes = study.shapes;
   const std::size_t judged = study.own.value_or(study.runs.size() - 1);
-  const double found = study.shapes.errors[judged];
-  if (std::isfinite(found) && found > 0)
-    study.findings.push_back(fmt::format("At {} {}{}, the final shapes are off by {}{} R0; its steps state {}.",
+  if (const double found = shapes.errors[judged]; std::isfinite(found)) {
+    const std::string off = !shapes.limit          ? fmt::format("some {}", scientific(found))
+                            : shapes.known(judged) ? scientific(found)
+                                                   : fmt::format("less than {}", scientific(shapes.uncertainty));
+    study.findings.push_back(fmt::format("At {} {}{}, the final shapes are off by {} R0; its steps state {}.",
                                          study.what.symbol, value_text(study.runs[judged].value),
-                                         study.own ? ", the scene's own" : "", limit ? "" : "some ", scientific(found),
+                                         study.own ? ", the scene's own" : "", off,
                                          scientific(study.runs[judged].stated)));
+  }
   if (study.what.name == "order") {
     if (last.stated > study.shapes.errors[study.runs.size() - 2])
       study.findings.push_back(

@@ -25,12 +25,13 @@ struct Digits {
   }
 };
 
-Digits digits_of(const std::vector<double>& values, double uncertainty) {
-  double size = 0, least = uncertainty > 0 ? uncertainty : std::numeric_limits<double>::infinity();
+Digits digits_of(const std::vector<double>& values, const Convergence& c) {
+  double size = 0, least = c.limit && c.uncertainty > 0 ? c.uncertainty : std::numeric_limits<double>::infinity();
+  const bool noisy = c.limit && !c.order;  // differences below the uncertainty mean nothing
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!std::isfinite(values[k])) continue;
     size = std::max(size, std::abs(values[k]));
-    if (k > 0 && std::isfinite(values[k - 1]) && values[k] != values[k - 1])
+    if (k > 0 && std::isfinite(values[k - 1]) && values[k] != values[k - 1] && !noisy)
       least = std::min(least, std::abs(values[k] - values[k - 1]));
   }
   constexpr int most = 12;
@@ -109,8 +110,7 @@ TextTable table_of_values(const Study& study) {
   for (std::size_t k = 0; k < study.runs.size(); ++k) table.columns.push_back(heading_of(study, k));
   table.columns.insert(table.columns.end(), {order_heading(study), "limit"});
   for (const auto& [result, c] : study.rows) {
-    const Digits digits =
-        result.from_last_run ? Digits{1, true} : digits_of(result.values, c.limit ? c.uncertainty : 0);
+    const Digits digits = result.from_last_run ? Digits{1, true} : digits_of(result.values, c);
     std::vector<std::string>& cells = table.rows.emplace_back();
     cells = {without_braces(result.name), without_braces(result.unit)};
     for (const double value : result.values) cells.push_back(digits.text(value));

@@ -127,7 +127,7 @@ std::optional<double> common_save_interval(const std::vector<double>& steps, con
   const auto fits = [&](double interval) {
     return std::all_of(steps.begin(), steps.end(), [&](double step) {
       const double count = interval / step;
-      return std::lround(count) >= 1 && std::abs(count - std::round(count)) < 1e-6 * count;
+      return std::abs(count - std::round(count)) < 1e-6 * count;
     });
   };
   const bool same = std::adjacent_find(given.begin(), given.end(), std::not_equal_to<>()) == given.end();

@@ -290,6 +290,26 @@ TEST_CASE("the files of converge have the same bytes with one thread and with tw
     CHECK(support::read_file(desk.path() / "1" / name) == support::read_file(desk.path() / "2" / name));
 }
 
+TEST_CASE("converge stops at the first signal, and the same command makes what it would have made", "[commands]") {
+  const Desk desk(quick);
+  const auto words = [&](const char* folder) {
+    return std::vector<std::string>{TANKTREAD_PROGRAM, "converge", desk.file("s.toml"), "-o",
+                                    desk.file(folder), "--set",    "time.end=3"};
+  };
+  const pid_t child = support::start(desk, words("a"));
+  REQUIRE(support::wait_for(desk / "a/tolerance-0.001.h5"));
+  kill(child, SIGINT);
+  const Outcome stopped = support::finish(desk, child);
+  INFO(stopped.err);
+  REQUIRE(stopped.status == 130);
+  CHECK(stopped.out.empty());
+  CHECK_THAT(stopped.err, Contains("1 of 3 runs") && Contains("the same command continues"));
+  CHECK_FALSE(std::filesystem::exists(desk / "a/tolerance.csv"));
+  for (const char* folder : {"a", "b"}) REQUIRE(support::run(desk, words(folder)).status == 0);
+  for (const char* name : {"tolerance.csv", "tolerance.png", "tolerance.md", "tolerance-0.001.h5"})
+    CHECK(support::read_file(desk.path() / "a" / name) == support::read_file(desk.path() / "b" / name));
+}
+
 TEST_CASE("fixed steps are varied by their length, without one that is shortened to meet a saved state", "[commands]") {
   const Desk desk(quick);
   const Outcome said = desk({"converge", desk.file("s.toml"), "-o", desk.file("out"), "--set", "time.step=0.1", "--set",
