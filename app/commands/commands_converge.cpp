@@ -178,7 +178,8 @@ int converge(const Options& options) {
     const ProgressSpan span{
         .what = fmt::format("{} {}, run {} of {}", plan.what.symbol, value_text(run.value), k + 1, plan.runs.size()),
         .first = done,
-        .share = share};
+        .share = share,
+        .name = fmt::format("{} {}", plan.what.symbol, value_text(run.value))};
     const SimulationReport report = simulate_run(run, options, span);
     done += share;
     if (report.interrupted) {

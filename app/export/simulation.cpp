@@ -39,7 +39,7 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   };
   observer.on_warning = [&](const std::string& warning) {
     progress.clear();
-    if (!options.quiet) tell(fmt::format("warning: {}", warning));
+    if (!options.quiet) tell(fmt::format("warning: {}{}{}", span.name, span.name.empty() ? "" : ": ", warning));
   };
   observer.on_ready = ready;
   observer.should_stop = [] { return interrupted(); };

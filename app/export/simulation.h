@@ -18,10 +18,11 @@ struct SimulationReport {
   std::string stopped;  ///< why the simulation stopped early; empty: it did not
 };
 
-/// One simulation of several in the line of progress: its name, and which part of the whole it is.
+/// One simulation of several in the line of progress, and which part of the whole it is.
 struct ProgressSpan {
   std::string what = "simulating";
   double first = 0, share = 1;
+  std::string name = {};  ///< before its warnings; empty: it is the only one
 };
 
 /// A new file; an existing trajectory is replaced. `ready` is called when the scene can be simulated, before anything
