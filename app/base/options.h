@@ -30,7 +30,8 @@ struct Options {
   std::vector<std::string> ignore;                     ///< --ignore X,Y,WxH
   std::filesystem::path mask, junit, html, diff;
   bool json = false, update = false;
-  bool quick = false, full = false;  ///< --quick, --full
+  std::string vary, values, quantities;  ///< of `converge`, as given
+  bool quick = false, full = false;      ///< --quick, --full
 };
 
 }  // namespace app

@@ -111,6 +111,10 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) {
        app.add_option("-o,--output", o.output, "the folder of the results (default: reproduce)");
      }},
+    {"to-study",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output, "the folder of the results (default: converge/ and the scene's name)");
+     }},
     {"threads",
      [](CLI::App& app, Options& o) {
        app.add_option("-j,--jobs", o.jobs, "threads (default: numerics.threads of the scene)")
@@ -135,6 +139,20 @@ constexpr OptionRow option_rows[] = {
            ->allow_extra_args(false)
            ->type_name("KEY=VALUE");
      }},
+    {"variation",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--vary", o.vary, "tolerance, step or order (default: what the scene's steps follow)")
+           ->type_name("NAME");
+       app.add_option("--values", o.values, "of it, two at least (default: three, one of them the scene's own)")
+           ->type_name("A,B,C");
+     }},
+    {"results",
+     [](CLI::App& app, Options& o) {
+       app.add_option("--quantities", o.quantities,
+                      "what is compared: quantities, columns of export --csv and results, of one vesicle as "
+                      "vesicle.0.NAME, reduced as NAME:largest (see tanktread list)")
+           ->type_name("A,B,...");
+     }},
     {"steps",
      [](CLI::App& app, Options& o) {
        app.add_option("--steps", o.steps, "stop after so many steps; 0: the initial state only")
@@ -150,6 +168,10 @@ constexpr OptionRow option_rows[] = {
     {"force-folder",
      [](CLI::App& app, Options& o) {
        app.add_flag("--force", o.force, "give up results of another scene that this program left in the folder");
+     }},
+    {"force-study",
+     [](CLI::App& app, Options& o) {
+       app.add_flag("--force", o.force, "replace trajectories of another scene and files that are there");
      }},
     {"force-file",
      [](CLI::App& app, Options& o) {

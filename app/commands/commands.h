@@ -19,6 +19,7 @@ int export_states(const Options&);
 int compare(const Options&);  ///< 0 same, 1 different, 2 could not compare
 int list(const Options&);
 int reproduce(const Options&);
+int converge(const Options&);
 
 std::vector<std::string_view> reproduction_names();  ///< the items of `reproduce`
 
@@ -36,6 +37,9 @@ inline constexpr Command commands[] = {
      "to-folder threads set steps dry-run quiet gl shader-dir force-folder", run},
     {"simulate", "the simulation alone: writes a trajectory, or continues one with --resume", "", "SCENE", false,
      "to-trajectory threads set steps dry-run quiet resume force-trajectory", simulate},
+    {"converge", "a scene at several tolerances, steps or orders: observed orders, limits and errors of its results",
+     "", "SCENE", false, "to-study threads set variation results dry-run quiet figure-size theme font-size force-study",
+     converge},
     {"render", "the pictures alone: draws a trajectory again with another view or style; several side by side", "",
      "TRAJECTORY", true,
      "to-pictures processes set-pictures quiet gl shader-dir shard style size format time force-file", render},

@@ -2,6 +2,8 @@
 
 #include "app/base/version.h"
 #include "app/commands/commands.h"
+#include "app/converge/values.h"
+#include "app/converge/variation.h"
 #include "app/export/reference.h"
 #include "app/scene/catalogues.h"
 
@@ -86,6 +88,8 @@ Words kinds_of_list() {
   return words;
 }
 
+Words words_of(const std::vector<std::string_view>& names) { return {names.begin(), names.end()}; }
+
 /// What may follow an option, or a command, wherever that is one of known words.
 struct Completion {
   std::string_view after;
@@ -93,11 +97,10 @@ struct Completion {
 };
 
 std::vector<Completion> completions_of_options() {
-  return {{"--gl", row_words(render::gl_choices())},
-          {"--preset", row_words(render::compare_presets())},
-          {"--style", catalogue_words("styles")},
-          {"--format", catalogue_words("formats")},
-          {"--theme", catalogue_words("themes")}};
+  return {{"--gl", row_words(render::gl_choices())}, {"--preset", row_words(render::compare_presets())},
+          {"--style", catalogue_words("styles")},    {"--format", catalogue_words("formats")},
+          {"--theme", catalogue_words("themes")},    {"--vary", row_words(variations())},
+          {"--quantities", words_of(result_names())}};
 }
 
 std::vector<Completion> completions_of_commands() {

@@ -18,7 +18,8 @@ namespace app {
 namespace {
 
 SimulationReport simulate(const Settings& settings, const std::filesystem::path& path, bool resume, bool another_time,
-                          std::int64_t first_step, const Options& options, const std::function<void()>& ready) {
+                          std::int64_t first_step, const Options& options, const std::function<void()>& ready,
+                          const ProgressSpan& span) {
   const sim::Scene& scene = settings.scene;
   sim::SimulationOptions how;
   how.trajectory = path;
@@ -29,16 +30,16 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   how.program = version();
   how.build = build();
 
-  Progress progress("simulating", options.quiet);
+  Progress progress(span.what, options.quiet);
   sim::SimulationObserver observer;
   observer.on_step = [&](const sim::Dynamics& d, const sim::StepRecord& record) {
     const double share =
         options.steps ? static_cast<double>(d.step) / static_cast<double>(*options.steps) : d.time / scene.time.end;
-    progress.show(share, fmt::format("step {:.0f}, t = {:.4g}", record.step, record.time));
+    progress.show(span.first + span.share * share, fmt::format("step {:.0f}, t = {:.4g}", record.step, record.time));
   };
   observer.on_warning = [&](const std::string& warning) {
     progress.clear();
-    if (!options.quiet) tell(fmt::format("warning: {}", warning));
+    if (!options.quiet) tell(fmt::format("warning: {}{}{}", span.name, span.name.empty() ? "" : ": ", warning));
   };
   observer.on_ready = ready;
   observer.should_stop = [] { return interrupted(); };
@@ -57,7 +58,7 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
 }  // namespace
 
 SimulationReport simulate_new(const Settings& settings, const std::filesystem::path& path, const Options& options,
-                              const std::function<void()>& ready) {
+                              const std::function<void()>& ready, const ProgressSpan& span) {
   if (path.has_parent_path()) {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
@@ -65,7 +66,7 @@ SimulationReport simulate_new(const Settings& settings, const std::filesystem::p
       throw std::runtime_error(
           fmt::format("cannot make folder '{}': {}", path.parent_path().string(), error.message()));
   }
-  return simulate(settings, path, false, false, 0, options, ready);
+  return simulate(settings, path, false, false, 0, options, ready, span);
 }
 
 namespace {
@@ -93,7 +94,7 @@ void check_further(const Settings& settings, const std::filesystem::path& path) 
 }
 
 SimulationReport simulate_further(const Settings& settings, const std::filesystem::path& path, const Options& options,
-                                  const std::function<void()>& ready) {
+                                  const std::function<void()>& ready, const ProgressSpan& span) {
   const sim::TrajectoryReader reader(path);
   const bool another_time = !checked_differences(settings, reader, path).empty();
   const sim::Dynamics d = sim::resume_point(reader, path);
@@ -104,7 +105,7 @@ SimulationReport simulate_further(const Settings& settings, const std::filesyste
     sim::remove_dead_drafts(sim::destination(path).parent_path());
     return {states, reader.time(states - 1), true, false, {}};
   }
-  SimulationReport report = simulate(settings, path, true, another_time, d.step, options, ready);
+  SimulationReport report = simulate(settings, path, true, another_time, d.step, options, ready, span);
   report.already_finished = done;
   return report;
 }

@@ -18,16 +18,23 @@ struct SimulationReport {
   std::string stopped;  ///< why the simulation stopped early; empty: it did not
 };
 
+/// One simulation of several in the line of progress, and which part of the whole it is.
+struct ProgressSpan {
+  std::string what = "simulating";
+  double first = 0, share = 1;
+  std::string name = {};  ///< before its warnings; empty: it is the only one
+};
+
 /// A new file; an existing trajectory is replaced. `ready` is called when the scene can be simulated, before anything
 /// is replaced.
 SimulationReport simulate_new(const Settings&, const std::filesystem::path& trajectory, const Options&,
-                              const std::function<void()>& ready = {});
+                              const std::function<void()>& ready = {}, const ProgressSpan& = {});
 /// Checks that the file can be continued with these settings: the same scene, except for time.end and
 /// time.save_every, and not past its end. Throws std::runtime_error that names the keys that differ.
 void check_further(const Settings&, const std::filesystem::path& trajectory);
 /// Continues a file, also to a later end or with other save times from there on, after calling `ready`; does nothing
 /// when it is finished. Files of other scenes are refused.
 SimulationReport simulate_further(const Settings&, const std::filesystem::path& trajectory, const Options&,
-                                  const std::function<void()>& ready = {});
+                                  const std::function<void()>& ready = {}, const ProgressSpan& = {});
 
 }  // namespace app

@@ -88,4 +88,20 @@ std::string parameter_caption(const sim::Scene& scene, double area_radius, doubl
   return text;
 }
 
+std::string error_caption(std::span<const sim::StepRecord> steps, double time) {
+  double error = 0;
+  for (const sim::StepRecord& step : steps)
+    if (step.dt > 0) {
+      double degrees = 0;
+      for (const sim::VesicleStep& v : step.vesicles) degrees = std::max(degrees, v.space_error);
+      error += (step.error + degrees) * std::clamp((time - step.time) / step.dt + 1, 0.0, 1.0);
+    }
+  if (!(error > 0)) return {};
+  const std::string text = fmt::format("{:.1e}", error);
+  const std::size_t e = text.find('e');
+  const int exponent = std::stoi(text.substr(e + 1));
+  return fmt::format("error of position {}·10^{{{}{}}} R_{{0}}", text.substr(0, e), exponent < 0 ? "−" : "",
+                     std::abs(exponent));
+}
+
 }  // namespace app

@@ -3,6 +3,10 @@
 
 #include "app/scene/settings.h"
 
+#include "sim/trajectory/trajectory.h"
+
+#include <span>
+
 namespace app {
 
 /// The unit in which times are shown: symbol "γ̇t" and factor |rate| in a steady shear flow, "t" and 1 otherwise.
@@ -29,5 +33,8 @@ std::string time_caption(const sim::Scene&, double time, const TimeFormat& = {})
 /// Where vesicles differ: "λ = 1, 10", and ν only when all shapes are the same. Ca = mu chi R^3 / kappa_b with chi
 /// the shear or extension rate, or the wall-ward shear a R of a Poiseuille flow.
 std::string parameter_caption(const sim::Scene&, double area_radius, double reduced_volume);
+/// "error of position 1.1·10^{−3} R_{0}": what the steps up to a time are estimated to leave, added up as `info` does;
+/// of the step that contains it the share that has passed. Empty before the first step.
+std::string error_caption(std::span<const sim::StepRecord>, double time);
 
 }  // namespace app

@@ -65,6 +65,7 @@ render::Captions captions_of(const ViewPanel& p, double time) {
   render::Captions captions = p.captions;
   if (!p.stamped) return captions;
   captions.time = time_caption(p.source.settings.scene, time, p.time_format);
+  captions.errors = error_caption(p.steps, time);
   captions.note = laid_note(p, time);
   return captions;
 }

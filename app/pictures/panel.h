@@ -28,6 +28,7 @@ struct ViewPanel {
   std::vector<double> laid = {};  ///< times at which labels were reset on any vesicle
   double notice = 0;              ///< how long before and after a reset a note is shown, in scene time
   TimeFormat time_format = {};
+  std::vector<sim::StepRecord> steps = {};  ///< where their errors are shown
 };
 
 }  // namespace app

@@ -66,7 +66,8 @@ Settings plain_settings(const Settings& settings) {
   Settings plain = settings;
   plain.view.projection = "orthographic";
   plain.view.background = "white";
-  plain.view.flow_arrows = plain.view.time_stamp = plain.view.caption = plain.view.scale_bar = false;
+  plain.view.flow_arrows = plain.view.time_stamp = plain.view.caption = plain.view.errors = plain.view.scale_bar =
+      false;
   plain.view.title = plain.view.triad = plain.view.flow_profile = plain.view.inset = plain.view.colour_bar = false;
   plain.view.streamlines = "off";
   plain.view.eye.reset();

@@ -92,6 +92,7 @@ ViewPanel make_panel(const PictureSource& source, const render::ViewParameters& 
     if (arrows.velocities.rows() > 0)
       p.arrow_speed = std::max(p.arrow_speed, arrows.velocities.rowwise().norm().maxCoeff());
   }
+  if (view.errors) p.steps = source.trajectory.steps();
   const render::MovieParameters& movie = source.settings.movie;
   const double per_frame = time_of_frame(source.trajectory, movie);
   const std::int64_t states = source.trajectory.count();

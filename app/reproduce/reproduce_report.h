@@ -2,6 +2,8 @@
 // for a figure its drawing; printing and writing.
 #pragma once
 
+#include "app/tables/text_table.h"
+
 #include "render/figures/figure.h"
 #include "render/image/image.h"
 
@@ -11,15 +13,6 @@
 #include <vector>
 
 namespace app {
-
-struct TextTable {
-  std::string caption;
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
-};
-std::string plain_text(const TextTable&);
-std::string markdown_text(const TextTable&);
-std::string csv_text(const TextTable&);
 
 struct Report {
   std::string title;
@@ -39,8 +32,5 @@ std::string markdown_text(const Report&, const std::string& item, const std::str
 std::vector<std::filesystem::path> write_report(const Report&, const std::filesystem::path& folder,
                                                 const std::string& item, const std::string& command,
                                                 const sim::FileWriter& write);
-
-/// "8.1e-6": two significant digits, as in the paper; "0" for zero, "-" for not a number.
-std::string scientific(double value, int digits = 2);
 
 }  // namespace app

@@ -2,6 +2,7 @@
 
 #include "app/tables/movie_formats.h"
 #include "app/tables/quantities.h"
+#include "app/tables/results.h"
 
 #include "render/core/colormap.h"
 #include "render/core/style.h"
@@ -44,7 +45,9 @@ const std::vector<Catalogue>& catalogues() {
       {"formats", "movie files", words(movie_formats())},
       {"figures", "figures drawn from a trajectory", words(render::figures())},
       {"themes", "looks of a figure", words(render::themes())},
-      {"quantities", "what figures show against time and in phase portraits", words(quantities())}};
+      {"quantities", "what figures show against time and in phase portraits", words(quantities())},
+      {"results", "numbers that a run ends in, for converge, besides quantities", words(results())},
+      {"reductions", "numbers made from a quantity over a run, for converge", words(reductions())}};
   return all;
 }
 

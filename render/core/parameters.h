@@ -48,6 +48,7 @@ struct ViewParameters {
   std::string streamlines = "off";
   bool time_stamp = true;
   bool caption = true;
+  bool errors = false;
   bool scale_bar = true;
   bool title = false;
   bool triad = false;
@@ -192,6 +193,10 @@ void visit(P& p, V&& v) {
     p.streamlines);
   v(Parameter{.name = "time_stamp", .unit = "", .meaning = "write the time"}, p.time_stamp);
   v(Parameter{.name = "caption", .unit = "", .meaning = "write the physical parameters"}, p.caption);
+  v(Parameter{.name = "errors",
+              .unit = "",
+              .meaning = "write the error of position that the time steps so far are estimated to leave"},
+    p.errors);
   v(Parameter{.name = "scale_bar", .unit = "", .meaning = "draw a bar one area radius long"}, p.scale_bar);
   v(Parameter{.name = "title", .unit = "", .meaning = "write the title of the scene"}, p.title);
   v(Parameter{.name = "triad", .unit = "", .meaning = "draw the directions of the axes x, y, z"}, p.triad);

@@ -12,22 +12,23 @@ namespace render {
 
 namespace {
 
-// What of the two captions in the upper left corner is shown.
+// What of the captions in the upper left corner is shown.
 struct Shown {
-  bool time, parameters;
+  bool time, parameters, errors;
 };
 Shown shown_captions(const Frame& frame) {
   return {.time = frame.view.time_stamp && !frame.captions.time.empty(),
-          .parameters = frame.view.caption && !frame.captions.parameters.empty()};
+          .parameters = frame.view.caption && !frame.captions.parameters.empty(),
+          .errors = frame.view.errors && !frame.captions.errors.empty()};
 }
 
-// Time, parameters and note, below each other.
+// Time, parameters, errors and note, below each other.
 void draw_corner(Image& image, const Font& font, const Frame& frame) {
   const Captions& captions = frame.captions;
   const Shown shown = shown_captions(frame);
-  if (!shown.time && !shown.parameters && captions.note.empty()) return;
+  if (!shown.time && !shown.parameters && !shown.errors && captions.note.empty()) return;
   const OverlaySizes s = overlay_sizes(image.height);
-  const double height = s.margin + 1.2 * s.large + 3.4 * s.small;
+  const double line = 1.7 * s.small, height = s.margin + 1.2 * s.large + (shown.errors ? 3 : 2) * line;
   draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(height))}, [&](cairo_t* cairo) {
     double y = s.margin + 0.76 * s.large;
     if (shown.time) {
@@ -38,7 +39,12 @@ void draw_corner(Image& image, const Font& font, const Frame& frame) {
     if (shown.parameters) {
       set_colour(cairo, soft_ink);
       draw_text_on_picture(cairo, font, s.small, s.margin, y, captions.parameters);
-      y += 1.7 * s.small;
+      y += line;
+    }
+    if (shown.errors) {
+      set_colour(cairo, soft_ink);
+      draw_text_on_picture(cairo, font, s.small, s.margin, y, captions.errors);
+      y += line;
     }
     if (!captions.note.empty()) {
       set_colour(cairo, note_ink);

@@ -58,7 +58,8 @@ struct FlowLines {
 struct Captions {
   std::string time;             ///< "γ̇t = 12.50"
   std::string parameters;       ///< "Ca = 2.0   λ = 1   ν = 0.85"
-  std::string note;             ///< below the parameters, highlighted: a temporary remark for the viewer
+  std::string errors;           ///< below the parameters: "error of position 1.1·10^{−3} R_{0}"
+  std::string note;             ///< below these, highlighted: a temporary remark for the viewer
   std::string title;            ///< in the middle of the upper edge
   std::string panel;            ///< in the middle of the lower edge: which view this is
   std::string scale = "R_{0}";  ///< above the scale bar

@@ -67,6 +67,8 @@ TEST_CASE("bash completes commands, their options, and the words of the catalogu
   CHECK(offered({"render", "t.h5", "--gl", "os"}) == Words{"osmesa"});
   CHECK(offered({"figure", "tank"}) == Words{"tank-treading"});
   CHECK(offered({"list", "para"}) == Words{"parameters"});
+  CHECK(offered({"converge", "s.toml", "--vary", ""}) == Words{"tolerance", "step", "order"});
+  CHECK(offered({"converge", "s.toml", "--quantities", "half"}) == Words{"half-turn"});
   CHECK(offered({"reproduce", "table2"}) == Words{"table2"});
   CHECK(offered({"run", "s.toml", "--set", "vesicle.ord"}) == Words{"vesicle.order="});
   CHECK(offered({"run", "sce"}).empty());  // a file: bash's own completion takes over

@@ -337,6 +337,42 @@ camera = ")") + camera + "\"\n",
   }
 }
 
+TEST_CASE("the caption of errors adds up what the steps up to a time leave, and a share of the step that contains it") {
+  std::vector<sim::StepRecord> steps(2);
+  steps[0].time = 1;
+  steps[0].dt = 1;
+  steps[0].error = 1e-3;
+  steps[1].time = 3;
+  steps[1].dt = 2;
+  steps[1].error = 4e-3;
+  CHECK(app::error_caption(steps, 0).empty());
+  CHECK(app::error_caption({}, 1).empty());
+  CHECK(app::error_caption(steps, 1) == "error of position 1.0·10^{−3} R_{0}");
+  CHECK(app::error_caption(steps, 2) == "error of position 3.0·10^{−3} R_{0}");
+  CHECK(app::error_caption(steps, 3) == "error of position 5.0·10^{−3} R_{0}");
+  CHECK(app::error_caption(steps, 9) == "error of position 5.0·10^{−3} R_{0}");
+}
+
+TEST_CASE("errors are written where asked for, and nothing else of the picture changes", "[commands]") {
+  const Desk desk;
+  const auto still = [&](const char* name, std::vector<std::string> more) {
+    std::vector<std::string> words{"render", desk.file("t.h5"), "--time", "0.5",
+                                   "-o",     desk.file(name),   "--set",  "view.size=[640, 360]"};
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(desk(words).status == 0);
+    return render::read_png(desk.file(name)).image;
+  };
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  const render::Image without = still("a.png", {}), with = still("b.png", {"--set", "view.errors=true"});
+  int inside = 0, outside = 0;
+  for (int y = 0; y < 360; ++y)
+    for (int x = 0; x < 640; ++x)
+      if (!std::equal(with.at(x, y), with.at(x, y) + 3, without.at(x, y)))
+        ++(x < 0.25 * 640 && y > 0.08 * 360 && y < 0.15 * 360 ? inside : outside);  // below time and parameters
+  CHECK(inside > 100);
+  CHECK(outside == 0);
+}
+
 TEST_CASE("times of a movie are written so that its frames differ, in any unit") {
   sim::Scene any;
   CHECK(app::time_caption(any, 12.5, app::time_format(any, 0.1, 20)) == "t = 12.50");
