@@ -13,6 +13,7 @@
 #include "app/scene/catalogues.h"
 #include "app/scene/output.h"
 #include "app/scene/scene_file.h"
+#include "app/scene/trajectory_scene.h"
 
 #include "sim/core/input_file.h"
 
@@ -61,20 +62,29 @@ std::pair<std::int64_t, std::int64_t> chosen_states(const sim::TrajectoryReader&
 }  // namespace
 
 int export_states(const Options& options) {
-  if (options.csv.empty() && options.vtk.empty() && options.ply.empty())
-    throw std::runtime_error("say what to write: --csv FILE, --vtk DIR or --ply DIR");
+  if (options.csv.empty() && options.motion.empty() && options.vtk.empty() && options.ply.empty())
+    throw std::runtime_error("say what to write: --csv FILE, --motion FILE, --vtk DIR or --ply DIR");
+  if (options.csv == "-" && options.motion == "-")
+    throw std::runtime_error("--csv and --motion cannot both go to standard output");
+  if (!options.motion.empty() && options.time)
+    throw std::runtime_error("--motion is of the whole trajectory; leave out --time");
   const sim::TrajectoryReader trajectory(options.inputs.front());
   const auto [first, end] = chosen_states(trajectory, options.time);
   ResultFiles files(options.inputs, options.force);
   // Before the first of them is written.
   if (!options.csv.empty()) files.require(options.csv);
+  if (!options.motion.empty()) files.require(options.motion);
   if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_series);
   for (std::int64_t k = first; k < end; ++k) {
     if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_name(k));
     for (int v = 0; !options.ply.empty() && v < trajectory.layout().vesicles; ++v)
       files.require_inside(options.ply / ply_name(static_cast<std::size_t>(v), k));
   }
-  if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory, first, end));
+  if (!options.csv.empty() || !options.motion.empty()) {
+    const sim::Scene scene = scene_in(trajectory, options.inputs.front()).scene;
+    if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory, scene, first, end));
+    if (!options.motion.empty()) files.write(options.motion, motion_csv(trajectory, scene));
+  }
   struct Kind {
     const std::filesystem::path& folder;
     std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&,
@@ -95,7 +105,8 @@ int export_states(const Options& options) {
       tell(fmt::format("interrupted; {} of {} states are in '{}'", states, end - first, folder.string()));
       return interrupted_status;
     }
-    if (!options.quiet && options.csv != "-") fmt::print("{}: {} states\n", printable(folder.string()), states);
+    if (!options.quiet && options.csv != "-" && options.motion != "-")
+      fmt::print("{}: {} states\n", printable(folder.string()), states);
   }
   files.settle();
   return 0;

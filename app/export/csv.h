@@ -1,6 +1,7 @@
-// `tanktread export --csv`: one row per saved state and vesicle.
+// `tanktread export --csv`: one row per saved state and vesicle; `--motion`: one row per vesicle.
 #pragma once
 
+#include "sim/core/parameters.h"
 #include "sim/trajectory/trajectory.h"
 
 namespace app {
@@ -10,9 +11,12 @@ struct CsvColumn {
   std::string name, meaning;
 };
 std::vector<CsvColumn> csv_columns();
+std::vector<CsvColumn> motion_columns();
 
 /// Header row and one row per vesicle and saved state from number `first` to `end` - 1; numbers with enough digits to
 /// be read back exactly.
-std::string csv_text(const sim::TrajectoryReader&, std::int64_t first, std::int64_t end);
+std::string csv_text(const sim::TrajectoryReader&, const sim::Scene&, std::int64_t first, std::int64_t end);
+/// Header row and one row per vesicle: what it does over the whole trajectory.
+std::string motion_csv(const sim::TrajectoryReader&, const sim::Scene&);
 
 }  // namespace app

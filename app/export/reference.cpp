@@ -127,6 +127,9 @@ std::string reference_page() {
   page += "\n## Columns of `export --csv`\n\nOne row per saved state and vesicle.\n\n| column | meaning |\n|---|---|\n";
   for (const CsvColumn& column : csv_columns())
     page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
+  page += "\n## Columns of `export --motion`\n\nOne row per vesicle.\n\n| column | meaning |\n|---|---|\n";
+  for (const CsvColumn& column : motion_columns())
+    page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
   page +=
       "\n## Diagnostics of each step\n\nIn the trajectory, group `steps`; those of a vesicle have one number a "
       "vesicle.\n\n"

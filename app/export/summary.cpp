@@ -1,8 +1,10 @@
 #include "app/export/summary.h"
 
 #include "app/base/printable.h"
+#include "app/figures/motions.h"
 #include "app/pictures/frames.h"
 #include "app/scene/scene_text.h"
+#include "app/scene/trajectory_scene.h"
 
 #include "render/image/image.h"
 #include "sim/core/derived.h"
@@ -127,6 +129,20 @@ std::string error_summary(const std::filesystem::path& path) {
   return steps.empty() ? std::string() : "estimated errors: " + error_line(trajectory, steps);
 }
 
+namespace {
+
+/// Nothing where the scene cannot be read; the lines above and below say so.
+std::string motion_summary(const sim::TrajectoryReader& trajectory, const std::filesystem::path& path) try {
+  std::string text;
+  for (const std::string& line : motion_lines(trajectory, scene_in(trajectory, path).scene))
+    text += fmt::format("motion     {}\n", line);
+  return text;
+} catch (const std::exception&) {
+  return {};
+}
+
+}  // namespace
+
 std::string trajectory_summary(const std::filesystem::path& path) {
   const sim::TrajectoryReader trajectory(path);
   const sim::TrajectoryHeader& header = trajectory.header();
@@ -139,6 +155,7 @@ std::string trajectory_summary(const std::filesystem::path& path) {
                       layout.label_order);
   text += fmt::format("states     {}, time {} to {}\n", states, states > 0 ? trajectory.time(0) : 0,
                       states > 0 ? trajectory.time(states - 1) : 0);
+  text += motion_summary(trajectory, path);
   const std::vector<sim::StepRecord> steps = trajectory.steps();
   text += fmt::format("steps      {}\n", steps.size());
   if (!steps.empty()) {

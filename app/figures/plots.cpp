@@ -1,9 +1,9 @@
 #include "app/figures/plots.h"
 
 #include "app/base/message.h"
+#include "app/figures/motions.h"
 #include "app/figures/tank_treading.h"
 
-#include "render/scene/surface.h"
 #include "sim/measures/diagnostics.h"
 #include "sim/sphere/norms.h"
 #include "sim/surface/dealias.h"
@@ -28,25 +28,6 @@ double value_at(const render::Series& s, double time) {
   const auto k = static_cast<std::size_t>(after - s.times.begin());
   const double share = (time - s.times[k - 1]) / (s.times[k] - s.times[k - 1]);
   return s.values[k - 1] + share * (s.values[k] - s.values[k - 1]);
-}
-
-/// Motion of each vesicle over the whole trajectory.
-std::vector<Motion> motions_of(const FigureSource& source) {
-  const double rate = time_unit(source.settings.scene).factor;
-  std::vector<double> times;
-  std::vector<std::vector<double>> angles(static_cast<std::size_t>(source.trajectory.layout().vesicles));
-  for (std::int64_t k = 0; k < source.trajectory.count(); ++k) {
-    const sim::State state = source.trajectory.state(k);
-    times.push_back(rate * state.time);
-    for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
-      const double angle =
-          sim::inclination(render::volume_moments(state.vesicles[v].position).second) * 180 / std::numbers::pi;
-      angles[v].push_back(angles[v].empty() ? angle : unwrapped(angle, angles[v].back()));
-    }
-  }
-  std::vector<Motion> all;
-  for (const std::vector<double>& of_one : angles) all.push_back(motion_of(times, of_one));
-  return all;
 }
 
 }  // namespace
@@ -126,20 +107,19 @@ std::vector<render::Plot> steady_plots(const std::vector<FigureSource>& sources)
     const sim::Scene& scene = source.settings.scene;
     if (time_unit(scene).symbol == "t") throw std::runtime_error("a figure of tank-treading needs steady shear flows");
     const sim::State last = source.trajectory.state(source.trajectory.count() - 1);
-    const std::vector<Motion> motions = motions_of(source);
+    const std::vector<VesicleMotion> motions = motions_of(source.trajectory, scene);
     for (std::size_t v = 0; v < last.vesicles.size(); ++v) {
       const std::string who = fmt::format("'{}', vesicle {}:", source.file, v);
-      if (motions[v] == Motion::tumbling || motions[v] == Motion::swinging)
+      const sim::AxisMotion motion = motions[v].motion;
+      if (motion == sim::AxisMotion::tumbling || motion == sim::AxisMotion::swinging)
         throw std::runtime_error(
             fmt::format("{} it {}, and a figure of tank-treading shows steady angles only; 'figure inclination' "
                         "shows how it turns",
-                        who, text_of(motions[v])));
-      if (motions[v] == Motion::untold)
-        tell(fmt::format("{} too short a run to tell whether it tank-treads, swings or tumbles; marked as not settled",
-                         who));
+                        who, text_of(motion)));
+      if (motion == sim::AxisMotion::untold) tell(fmt::format("{} {}; marked as not settled", who, motions[v].why));
       points.push_back(
           steady_point(plans, last.vesicles[v], scene.vesicles[v].viscosity_contrast, time_unit(scene).factor));
-      points.back().motion = motions[v];
+      points.back().motion = motion;
     }
   }
   return tank_treading_plots(points);

@@ -1,10 +1,9 @@
 #include "app/figures/series.h"
 
-#include "app/figures/tank_treading.h"
+#include "app/figures/samples.h"
 
-#include "render/scene/surface.h"
 #include "sim/measures/diagnostics.h"
-#include "sim/suspension/velocity.h"
+#include "sim/measures/motion.h"
 
 #include <fmt/format.h>
 
@@ -23,36 +22,20 @@ struct Measurements {
   std::vector<sim::StepRecord> steps;
 };
 
-/// Taylor's, with the axes of the second moments in the shear plane.
-double deformation_of(const sim::Coefficients& position) {
-  const Eigen::Matrix3d m = render::volume_moments(position).second;
-  const double mean = (m(0, 0) + m(2, 2)) / 2, half = std::hypot((m(0, 0) - m(2, 2)) / 2, m(0, 2));
-  const double l = std::sqrt(mean + half), b = std::sqrt(mean - half);
-  return (l - b) / (l + b);
-}
-
-/// Of one vesicle, with its velocity relative to its centre.
-VesicleSample sample_of(sim::Plans& plans, sim::VesicleState vesicle, double initial_area, double initial_volume) {
-  vesicle.velocity.values.row(0) -= std::sqrt(sim::default_area) * sim::centroid_velocity(plans, vesicle).transpose();
-  VesicleSample sample{sim::measure(plans, vesicle, initial_area, initial_volume)};
-  sample.deformation = deformation_of(vesicle.position);
-  return sample;
-}
-
 /// All saved states, with angles continued from state to state.
-void measure_states(const sim::TrajectoryReader& trajectory, Measurements& m) {
+void measure_states(const FigureSource& source, Needs needs, Measurements& m) {
+  const sim::TrajectoryReader& trajectory = source.trajectory;
   sim::Plans plans;
   std::vector<sim::VesicleMeasures> initial;
   for (std::int64_t k = 0; k < trajectory.count(); ++k) {
     const sim::State state = trajectory.state(k);
     m.times.push_back(state.time);
-    std::vector<VesicleSample> now;
-    for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
-      if (k == 0) initial.push_back(sim::measure(plans, state.vesicles[v], 1, 1));
-      now.push_back(sample_of(plans, state.vesicles[v], initial[v].area, initial[v].volume));
-      double& angle = now.back().inclination_deg;
-      if (k > 0) angle = unwrapped(angle, m.samples.back()[v].inclination_deg);
-    }
+    if (k == 0)
+      for (const sim::VesicleState& v : state.vesicles) initial.push_back(sim::measure(plans, v, 1, 1));
+    std::vector<VesicleSample> now = samples_of(plans, state, initial);
+    if (needs != Needs::shape) add_flow(plans, source.settings.scene, state, needs, now);
+    for (std::size_t v = 0; k > 0 && v < now.size(); ++v)
+      now[v].inclination_deg = sim::unwrapped(now[v].inclination_deg, m.samples.back()[v].inclination_deg);
     m.samples.push_back(std::move(now));
   }
 }
@@ -61,7 +44,9 @@ Measurements measurements_of(const FigureSource& source, const std::vector<const
   const auto of_states = [](const QuantityRow* row) { return std::holds_alternative<StateCurves>(row->curves); };
   Measurements m;
   m.length = length_of(source.trajectory);
-  if (std::any_of(rows.begin(), rows.end(), of_states)) measure_states(source.trajectory, m);
+  Needs needs = Needs::shape;
+  for (const QuantityRow* row : rows) needs = std::max(needs, row->needs);
+  if (std::any_of(rows.begin(), rows.end(), of_states)) measure_states(source, needs, m);
   if (!std::all_of(rows.begin(), rows.end(), of_states)) m.steps = source.trajectory.steps();
   return m;
 }

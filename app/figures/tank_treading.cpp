@@ -5,6 +5,7 @@
 #include "sim/sphere/basis.h"
 #include "sim/sphere/legendre.h"
 #include "sim/surface/shapes.h"
+#include "sim/suspension/velocity.h"
 
 #include <fmt/format.h>
 
@@ -27,62 +28,7 @@ std::vector<double> contrasts_of(const std::vector<SteadyPoint>& points) {
   return all;
 }
 
-/// Values at the turning points of a curve, the first and last value left out; what is smaller than `least` is no
-/// swing.
-std::vector<double> turning_points(const std::vector<double>& values, double least) {
-  std::vector<double> turns;
-  double low = values.front(), high = values.front();  // since the last turn
-  int direction = 0;
-  for (const double x : values) {
-    if (direction >= 0 && x < high - least) {
-      if (direction > 0) turns.push_back(high);
-      direction = -1;
-      low = x;
-    } else if (direction <= 0 && x > low + least) {
-      if (direction < 0) turns.push_back(low);
-      direction = 1;
-      high = x;
-    }
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-  return turns;
-}
-
 }  // namespace
-
-double unwrapped(double angle, double before) { return angle + 180 * std::round((before - angle) / 180); }
-
-std::string_view text_of(Motion motion) {
-  switch (motion) {
-    case Motion::tank_treading:
-      return "tank-treads";
-    case Motion::swinging:
-      return "swings";
-    case Motion::tumbling:
-      return "tumbles";
-    case Motion::untold:
-      break;
-  }
-  return "has not settled";
-}
-
-Motion motion_of(const std::vector<double>& times, const std::vector<double>& degrees) {
-  constexpr double still = 1, least_strain = 2, lasting = 0.9;  // degrees; strain; of a swing to the one before
-  if (times.empty() || times.size() != degrees.size()) return Motion::untold;
-  const auto [low, high] = std::minmax_element(degrees.begin(), degrees.end());
-  if (*high - *low >= 180) return Motion::tumbling;
-  const double window = (times.back() - times.front()) / 3;
-  if (!(window >= least_strain)) return Motion::untold;
-  const auto first = std::lower_bound(times.begin(), times.end(), times.back() - window) - times.begin();
-  const auto [least, most] = std::minmax_element(degrees.begin() + first, degrees.end());
-  if (times.size() - static_cast<std::size_t>(first) > 2 && *most - *least <= still) return Motion::tank_treading;
-  const std::vector<double> turns = turning_points(degrees, still);
-  if (turns.size() < 3) return Motion::untold;
-  const double last = std::abs(turns[turns.size() - 1] - turns[turns.size() - 2]);
-  const double before = std::abs(turns[turns.size() - 2] - turns[turns.size() - 3]);
-  return last >= lasting * before ? Motion::swinging : Motion::untold;
-}
 
 const std::vector<LiteraturePoint>& literature_angles() {
   static const std::vector<LiteraturePoint> points{
@@ -99,27 +45,42 @@ const std::vector<LiteraturePoint>& literature_frequencies() {
   return points;
 }
 
+double membrane_frequency(const sim::Coefficients& position, const sim::Coefficients& velocity, const sim::Vec3& centre,
+                          double turning) {
+  render::CutPlane plane;
+  plane.origin = centre;
+  const std::vector<render::ClosedCurve> curves = render::cut(position, plane);
+  if (curves.empty()) return std::nan("");
+  const render::ClosedCurve& c = curves.front();
+  const sim::Matrix u = sim::sample_points(velocity, c.directions);
+  const Eigen::Index count = c.points.rows();
+  sim::Vector along(count);  // the shape turns by the angle from x to z: its own velocity is turning (-z, x)
+  for (Eigen::Index i = 0; i < count; ++i)
+    along[i] = (u(i, 0) + turning * c.points(i, 1)) * c.tangents(i, 0) +
+               (u(i, 2) - turning * c.points(i, 0)) * c.tangents(i, 1);
+  if (!(along.minCoeff() > 0) && !(along.maxCoeff() < 0)) return 0;  // no point goes round
+  // The time of passage per length, as a function of the length along the section, some points more than once round.
+  std::vector<double> lengths{0}, slowness;
+  const auto more = static_cast<std::size_t>(count) + 3;
+  for (std::size_t k = 0; k < more; ++k) {
+    const auto i = static_cast<Eigen::Index>(k) % count, j = (i + 1) % count;
+    const double turn = std::acos(std::clamp(c.tangents.row(i).dot(c.tangents.row(j)), -1.0, 1.0)) / 2;
+    const double chord = (c.points.row(j) - c.points.row(i)).norm();
+    slowness.push_back(1 / along[i]);
+    if (k + 1 < more) lengths.push_back(lengths.back() + chord * (turn > 1e-4 ? turn / std::sin(turn) : 1));
+  }
+  const double begin = lengths[1], end = lengths[static_cast<std::size_t>(count) + 1];
+  return -2 * pi / ((end - begin) * sim::mean_over(lengths, slowness, begin, end));  // tangents run from x to z
+}
+
 SteadyPoint steady_point(sim::Plans& plans, const sim::VesicleState& v, double viscosity_contrast, double rate) {
   const sim::VesicleMeasures m = sim::measure(plans, v, 1, 1);
-  SteadyPoint point{.reduced_volume = m.reduced_volume,
-                    .viscosity_contrast = viscosity_contrast,
-                    .angle = m.inclination_deg / 180,
-                    .frequency = 0};
-  render::CutPlane plane;
-  plane.origin = m.center;
-  const std::vector<render::ClosedCurve> curves = render::cut(v.position, plane, 96);
-  if (curves.empty()) return point;
-  const render::ClosedCurve& c = curves.front();
-  const sim::Matrix u = sim::sample_points(v.velocity, c.directions);
-  const Eigen::Index count = c.points.rows();
-  double period = 0;
-  const auto along = [&](Eigen::Index i) { return u(i, 0) * c.tangents(i, 0) + u(i, 2) * c.tangents(i, 1); };
-  for (Eigen::Index i = 0; i < count; ++i) {  // chords and harmonic means: right to second order in a spacing of 1/200
-    const Eigen::Index j = (i + 1) % count;
-    period += (c.points.row(j) - c.points.row(i)).norm() * (1 / std::abs(along(i)) + 1 / std::abs(along(j))) / 2;
-  }
-  point.frequency = 2 * pi / period / rate;
-  return point;
+  sim::Coefficients velocity = v.velocity;
+  velocity.values.row(0) -= std::sqrt(sim::default_area) * sim::centroid_velocity(plans, v).transpose();
+  return {.reduced_volume = m.reduced_volume,
+          .viscosity_contrast = viscosity_contrast,
+          .angle = m.inclination_deg / 180,
+          .frequency = std::abs(membrane_frequency(v.position, velocity, m.center, 0)) / rate};
 }
 
 SteadyPoint keller_skalak(double nu, double lambda) {
@@ -268,7 +229,8 @@ std::vector<render::Plot> tank_treading_plots(const std::vector<SteadyPoint>& po
   for (std::size_t k = 0; k < contrasts.size(); ++k) {
     std::vector<SteadyPoint> settled, unsettled;
     for (const SteadyPoint& p : points)
-      if (p.viscosity_contrast == contrasts[k]) (p.motion == Motion::tank_treading ? settled : unsettled).push_back(p);
+      if (p.viscosity_contrast == contrasts[k])
+        (p.motion == sim::AxisMotion::tank_treading ? settled : unsettled).push_back(p);
     add_settled(panels, settled, contrasts[k], k);
     add_unsettled(panels, unsettled, contrasts[k], k);
     add_literature(panels.angle, literature_angles(), contrasts[k], k, true);

@@ -3,33 +3,27 @@
 
 #include "render/figures/figure.h"
 #include "sim/layers/plans.h"
+#include "sim/measures/motion.h"
 
-#include <string_view>
 #include <vector>
 
 namespace app {
 
-/// Motion of the long axis in a steady shear flow.
-enum class Motion { untold, tank_treading, swinging, tumbling };
-/// Determined from times, in units of 1/rate, and unwrapped inclinations in degrees:
-///   tumbling       it turned by half a turn or more; between two angles at rest there is less
-///   tank_treading  over the last third, which spans a strain of 2 at least, it stays within one degree
-///   swinging       its last two swings are larger than a degree, and the last no smaller than 9/10 of the one before
-/// Otherwise untold: the run is too short, or still settling.
-Motion motion_of(const std::vector<double>& times, const std::vector<double>& degrees);
-/// "tumbles", for messages.
-std::string_view text_of(Motion);
-/// Unwraps an angle in degrees of an axis, modulo 180 degrees, next to the previous one.
-double unwrapped(double angle, double before);
+/// Angular frequency 2 pi/T of the membrane round the section y = y of the centre, relative to the shape, which turns
+/// at the rate `turning` of its inclination (rad/time): T is the integral of the arc length over the speed along the
+/// section, the time in which a point of it goes round where shape and motion are steady. Positive with the vorticity
+/// of u = z e_x, about +y; 0 where the speed along the section vanishes somewhere, so that no point goes round; NaN
+/// without a section. Velocity (3 fields): relative to the centre.
+double membrane_frequency(const sim::Coefficients& position, const sim::Coefficients& velocity, const sim::Vec3& centre,
+                          double turning);
 
 struct SteadyPoint {
   double reduced_volume = 0, viscosity_contrast = 1;
   double angle = 0;      ///< inclination / pi
   double frequency = 0;  ///< of the membrane around the section through the centroid, 2 pi / period / rate
-  Motion motion = Motion::tank_treading;
+  sim::AxisMotion motion = sim::AxisMotion::tank_treading;
 };
-/// Of a vesicle that tank-treads in a shear flow of that rate, from one state: the period is the integral of the arc
-/// length over the speed along the section y = y of the centroid.
+/// Of a vesicle that tank-treads in a shear flow of that rate, from one state.
 SteadyPoint steady_point(sim::Plans&, const sim::VesicleState&, double viscosity_contrast, double rate);
 
 /// Keller and Skalak 1982 for a prolate spheroid (closed form, approximate physics); frequency 0 and angle NaN where

@@ -1,5 +1,7 @@
 #include "app/pictures/captions.h"
 
+#include "sim/membrane/flows.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -27,9 +29,8 @@ double flow_rate(const sim::Scene& scene, double area_radius) {
 }
 
 TimeUnit time_unit(const sim::Scene& scene) {
-  const bool shear = scene.flows.size() == 1 && scene.flows[0].kind == "shear" &&
-                     scene.flows[0].time_factor == "constant" && scene.flows[0].rate != 0;
-  return shear ? TimeUnit{"γ̇t", std::abs(scene.flows[0].rate)} : TimeUnit{};
+  const std::optional<double> rate = sim::steady_shear_rate(scene.flows);
+  return rate ? TimeUnit{"γ̇t", std::abs(*rate)} : TimeUnit{};
 }
 
 TimeFormat time_format(const sim::Scene& scene, double spacing, double end) {

@@ -15,6 +15,7 @@ using render::Scale;
 
 double tension_unit(const Units& u) { return u.bending_modulus > 0 ? u.bending_modulus / (u.length * u.length) : 1; }
 double velocity_unit(const Units& u) { return u.rate > 0 ? u.rate * u.length : 1; }
+double stresslet_unit(const Units& u) { return std::pow(u.length, 3) * (u.rate > 0 ? u.rate : 1); }
 
 }  // namespace
 
@@ -100,6 +101,61 @@ const std::vector<QuantityRow>& quantities() {
                               }}},
        .scaling = Scaling::rate,
        .bare_axis = "⟨(u·n)^{2}⟩^{1/2}"},
+      {.name = "viscosity",
+       .meaning = "intrinsic viscosity of a dilute suspension in this state, S_xz / γ̇V; 5/2 for a sphere",
+       .axis = "intrinsic viscosity [η]",
+       .scale = Scale::linear,
+       .curves = StateCurves{{"[η]", [](const Sample& m, const Units&) { return m.flow.intrinsic_viscosity; }}},
+       .needs = Needs::forces},
+      {.name = "normal-stresses",
+       .meaning = "first and second difference of a dilute suspension in this state, over γ̇ and the share of vesicles",
+       .axis = "N / γ̇φ",
+       .scale = Scale::linear,
+       .curves = StateCurves{{"N_{1}", [](const Sample& m, const Units&) { return m.flow.normal_stress_1; }},
+                             {"N_{2}", [](const Sample& m, const Units&) { return m.flow.normal_stress_2; }}},
+       .needs = Needs::forces},
+      {.name = "stresslet",
+       .meaning = "in the shear plane, about the centre, without trace",
+       .axis = "S / γ̇R_{0}^{3}",
+       .scale = Scale::linear,
+       .curves =
+           StateCurves{
+               {"S_{xx}", [](const Sample& m, const Units& u) { return m.flow.stresslet(0, 0) / stresslet_unit(u); }},
+               {"S_{xz}", [](const Sample& m, const Units& u) { return m.flow.stresslet(0, 2) / stresslet_unit(u); }},
+               {"S_{zz}", [](const Sample& m, const Units& u) { return m.flow.stresslet(2, 2) / stresslet_unit(u); }}},
+       .scaling = Scaling::rate,
+       .bare_axis = "S / R_{0}^{3}",
+       .needs = Needs::forces},
+      {.name = "velocity",
+       .meaning = "of the centre",
+       .axis = "velocity / γ̇R_{0}",
+       .scale = Scale::linear,
+       .curves =
+           StateCurves{
+               {"U_{x}", [](const Sample& m, const Units& u) { return m.flow.center_velocity[0] / velocity_unit(u); }},
+               {"U_{y}", [](const Sample& m, const Units& u) { return m.flow.center_velocity[1] / velocity_unit(u); }},
+               {"U_{z}", [](const Sample& m, const Units& u) { return m.flow.center_velocity[2] / velocity_unit(u); }}},
+       .scaling = Scaling::rate,
+       .bare_axis = "velocity",
+       .needs = Needs::velocity},
+      {.name = "migration",
+       .meaning = "velocity of the centre across the flow: along z in shear, away from the axis in Poiseuille flow",
+       .axis = "migration / γ̇R_{0}",
+       .scale = Scale::linear,
+       .curves = StateCurves{{"migration",
+                              [](const Sample& m, const Units& u) { return m.flow.migration / velocity_unit(u); }}},
+       .scaling = Scaling::rate,
+       .bare_axis = "migration velocity",
+       .needs = Needs::velocity},
+      {.name = "frequency",
+       .meaning = "angular, of the membrane round the section with the shear plane, relative to the turning shape",
+       .axis = "frequency ω / γ̇",
+       .scale = Scale::linear,
+       .curves =
+           StateCurves{{"ω", [](const Sample& m, const Units& u) { return m.frequency / (u.rate > 0 ? u.rate : 1); }}},
+       .scaling = Scaling::rate,
+       .bare_axis = "frequency ω",
+       .needs = Needs::velocity},
       {.name = "gap",
        .meaning = "least distance between two membranes",
        .axis = "gap / R_{0}",

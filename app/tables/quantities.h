@@ -5,6 +5,7 @@
 #include "render/figures/plot.h"
 #include "sim/core/catalogue.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/measures/stresslet.h"
 #include "sim/trajectory/trajectory.h"
 
 #include <variant>
@@ -20,9 +21,14 @@ struct QuantityUnits {
 };
 enum class Scaling { nothing, rate, bending };  ///< which of them a quantity needs besides the length
 
+/// What of a state a quantity is made of: the forces take a solve.
+enum class Needs { shape, velocity, forces };
+
 /// Measures of a vesicle at a saved state; velocities are relative to its centre.
 struct VesicleSample : sim::VesicleMeasures {
-  double deformation = 0;  ///< (L - B) / (L + B) of the second moments in the shear plane
+  double deformation = 0;       ///< (L - B) / (L + B) of the second moments in the shear plane
+  sim::FlowMeasures flow = {};  ///< where a quantity needs it
+  double frequency = 0;         ///< of the membrane round the section with the shear plane, likewise
 };
 
 /// A curve and its value: of a vesicle at a saved state, or of a vesicle in a step.
@@ -46,6 +52,7 @@ struct QuantityRow {
   bool differentiate = false;  ///< the values are the rates of change of the function, per time / rate
   Scaling scaling = Scaling::nothing;
   const char* bare_axis = nullptr;  ///< label without that scale
+  Needs needs = Needs::shape;
 };
 /// The names of its curves.
 std::vector<const char*> curve_names(const QuantityRow&);

@@ -65,6 +65,35 @@ bool moves(const FlowParameters& f, double end) {
   return has_strength(f);
 }
 
+namespace {
+
+/// Fluid at rest and uniform flows neither deform nor turn anything.
+bool carries_only(const FlowParameters& f) { return f.kind == "none" || f.kind == "uniform"; }
+
+}  // namespace
+
+std::optional<double> steady_shear_rate(std::span<const FlowParameters> flows) {
+  std::optional<double> rate;
+  for (const FlowParameters& f : flows) {
+    if (carries_only(f)) continue;
+    if (rate || f.kind != "shear" || f.time_factor != "constant" || f.rate == 0) return std::nullopt;
+    rate = f.rate;
+  }
+  return rate;
+}
+
+std::optional<Vec3> across(std::span<const FlowParameters> flows, const Vec3& position) {
+  std::string_view kind;
+  for (const FlowParameters& f : flows) {
+    if (carries_only(f)) continue;
+    if ((f.kind != "shear" && f.kind != "poiseuille") || (!kind.empty() && kind != f.kind)) return std::nullopt;
+    kind = f.kind;
+  }
+  if (kind.empty()) return std::nullopt;
+  const Vec3 radius(0, position[1], position[2]);
+  return kind == "shear" || radius.norm() == 0 ? Vec3::UnitZ() : Vec3(radius.normalized());
+}
+
 double next_switch(std::span<const FlowParameters> flows, double time) {
   double next = unlimited;
   for (const FlowParameters& f : flows)

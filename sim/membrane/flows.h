@@ -5,6 +5,7 @@
 #include "sim/core/catalogue.h"
 #include "sim/core/parameters.h"
 
+#include <optional>
 #include <span>
 
 namespace sim {
@@ -19,6 +20,12 @@ double time_factor(const FlowParameters&, double time);
 double oscillation(const FlowParameters&);
 /// Whether it can move anything: its strength is nonzero and it acts at some time before `end`.
 bool moves(const FlowParameters&, double end);
+/// Rate of a steady simple shear, signed: of one constant flow "shear" that is not zero, alone or beside uniform flows
+/// and fluid at rest; none with any other flow.
+std::optional<double> steady_shear_rate(std::span<const FlowParameters>);
+/// Unit vector across a parallel flow at a place: e_z in shear, away from the axis in Poiseuille flow (on it, e_z),
+/// uniform flows and fluid at rest aside. None without such a flow, beside any other, and where there are both.
+std::optional<Vec3> across(std::span<const FlowParameters>, const Vec3& position);
 /// The next time after `time` at which a flow is switched on or off; infinite: none.
 double next_switch(std::span<const FlowParameters>, double time);
 /// The flows that act between two times without a switch between them, each without its switches: at a switching

@@ -1,7 +1,7 @@
 #include "sim/suspension/velocity.h"
 
 #include "sim/core/parallel.h"
-#include "sim/surface/dealias.h"
+#include "sim/suspension/loads.h"
 
 #include <algorithm>
 #include <cmath>
@@ -110,43 +110,19 @@ void add_near(const FlowField& field, int j, PointBlock& block, Matrix& u) {
 
 FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const FlowFieldOptions& options) {
   const int n = int(state.vesicles.size());
-  const NumericsParameters& numerics = scene.numerics;
   FlowField field{scene.flows, state.time, std::vector<FlowSource>(n), {}, {}, options};
   std::vector<Sources> coarse;
-  std::vector<Material> materials;
-  std::vector<Coefficients> positions;
-  std::vector<AreaVolume> sizes;
-  for (int i = 0; i < n; ++i) {
-    const VesicleParameters& v = scene.vesicles[i];
-    materials.push_back({v.viscosity_contrast, v.bending_modulus, v.density_difference});
-    positions.push_back(state.vesicles[i].position);
-    sizes.push_back(area_volume(plans.basis(positions[i].order, measure_order(positions[i].order)), positions[i]));
-  }
-  const auto pinned = pinned_tensions(plans, scene.flows, scene.buoyancy.gravity, materials, positions, sizes);
-  std::vector<Coefficients> repelled;
-  if (n > 1 && numerics.repulsion_strength > 0) {
-    const InteractionOptions interaction{
-        numerics.interaction_order, numerics.near_rule, {numerics.near_latitudes, numerics.near_longitudes}};
-    repelled = repulsion(plan_interaction(plans, positions, materials, interaction), numerics.repulsion_strength,
-                         numerics.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes)));
-  }
+  std::vector<Load> loads = loads_of(plans, scene, state, options.hold_spheres);
   for (int i = 0; i < n; ++i) {
     const VesicleState& v = state.vesicles[i];
     const int p = v.position.order;
-    const int rate =
-        numerics.upsampling > 0 ? numerics.upsampling : upsampling_rate(plans, v.position, numerics.aliasing_tolerance);
-    const Sheet m =
-        freeze_sheet(plans, materials[i], v.position, rate, {}, options.hold_spheres ? pinned[i] : std::nullopt);
     FlowSource& source = field.sources[i];
     source.position = v.position;
     source.velocity = v.velocity;
-    source.viscosity_contrast = materials[i].viscosity_contrast;
-    source.densities.force = known_force(m, scene.buoyancy.gravity);
-    source.rigid = rigid_part(m.body, v.velocity);
-    const Motion rest{without_rigid_part(m.body, v.velocity), v.tension};
-    source.densities.force.values += implicit_force(m, 0, rest).values;
-    if (!repelled.empty()) source.densities.force.values += repelled[i].values;
-    source.densities.dual = dual_density(m.body, source.viscosity_contrast, v.velocity);
+    source.viscosity_contrast = scene.vesicles[i].viscosity_contrast;
+    source.densities.force = std::move(loads[i].force);
+    source.rigid = rigid_part(loads[i].body, v.velocity);
+    source.densities.dual = dual_density(loads[i].body, source.viscosity_contrast, v.velocity);
     source.rotation = &plans.rotation(p);
     const int order = std::max(2 * p, 24);
     source.directions = grid_directions(plans.basis(p, order));

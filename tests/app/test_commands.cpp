@@ -311,11 +311,41 @@ TEST_CASE("export writes one row per saved state and vesicle under the promised 
   CHECK(
       outcome.out.substr(0, outcome.out.find('\n')) ==
       "step,time,vesicle,area,volume,area_error,volume_error,reduced_volume,center_x,center_y,center_z,inclination_deg,"
-      "axis_1,axis_2,axis_3,energy,velocity_l2,normal_velocity_l2,tension_mean,tension_min,tension_max");
+      "axis_1,axis_2,axis_3,energy,velocity_l2,normal_velocity_l2,tension_mean,tension_min,tension_max,stresslet_xx,"
+      "stresslet_yy,stresslet_zz,stresslet_xy,stresslet_xz,stresslet_yz,intrinsic_viscosity,normal_stress_1,normal_"
+      "stress_2,"
+      "center_velocity_x,center_velocity_y,center_velocity_z,migration,inclination_rate,frequency");
   CHECK(std::count(outcome.out.begin(), outcome.out.end(), '\n') == 7);
   CHECK(desk({"export", desk.file("t.h5"), "--csv", desk.file("t.csv")}).status == 0);
   CHECK(support::read_file(desk / "t.csv") == outcome.out);
   CHECK(desk({"export", desk.file("t.h5"), "--csv", desk.file("no/t.csv")}).status == 1);
+}
+
+TEST_CASE("export and info tell the motion of each vesicle, or why it cannot be told", "[commands]") {
+  const Desk desk;
+  const auto shown = [&](std::vector<std::string> changes) {
+    std::vector<std::string> words{"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q", "--force"};
+    for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+    REQUIRE(desk(words).status == 0);
+    const Outcome table = desk({"export", desk.file("t.h5"), "--motion", "-"});
+    REQUIRE(table.status == 0);
+    CHECK(
+        table.out.starts_with("vesicle,motion,period,from,to,angle_mean,angle_min,angle_max,frequency,"
+                              "intrinsic_viscosity,normal_stress_1,normal_stress_2,migration\n0,"));
+    return table.out.substr(table.out.find('\n')) + desk({"info", desk.file("t.h5")}).out;
+  };
+  const auto lasting = [](double end) { return "time.end=" + std::to_string(end); };
+  CHECK_THAT(shown({}), Contains("0,untold,nan") && Contains("motion     untold: too short a run"));
+  CHECK_THAT(shown({lasting(12), "vesicle.axis=[0.9,0,0.4]"}),
+             Contains("0,tank-treading,nan,8,12") && Contains("motion     tank-treading at "));
+  CHECK_THAT(shown({lasting(14), "vesicle.viscosity_contrast=20"}),
+             Contains("0,tumbling,") && Contains("motion     tumbling, period ") && Contains("(half turn "));
+  CHECK_THAT(shown({"flow.kind=none"}), Contains("motion     untold: there is no steady shear flow"));
+  std::string round = commands::scene;
+  round.replace(round.find("shape"), round.find("order") - round.find("shape"), "shape = \"sphere\"\n");
+  support::write_file(desk / "s.toml", round);
+  CHECK_THAT(shown({}), Contains("motion     untold: it is round"));
+  CHECK_THAT(desk({"export", desk.file("t.h5"), "--motion", "-", "--time", "0"}).err, Contains("leave out --time"));
 }
 
 TEST_CASE("figure writes four files", "[commands]") {
