@@ -139,7 +139,7 @@ def rheology(s):
         out.append(f"| λ = {contrast}: [η], and of what the first order leaves the share of Δ | {viscosity[contrast]:.5f}, {rest:.3f} | | |")
     for a, b in ((0.2, 1), (1, 3)):
         lowered = round((b - a) * 23 * excess / (16 * math.pi), 5)
-        out.append(s.check(f"[η](λ = {a}) − [η](λ = {b})", viscosity[a] - viscosity[b], lowered, round(0.03 * lowered, 5), 5))
+        out.append(s.check(f"[η] at λ = {a} less that at λ = {b}", viscosity[a] - viscosity[b], lowered, round(0.03 * lowered, 5), 5))
     for contrast in (1, 100):
         rows, _ = s.run("tank-treading", "vesicle.order=8", f"vesicle.viscosity_contrast={contrast}", "vesicle.reduced_volume=1",
                         "time.end=2")
