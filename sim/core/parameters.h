@@ -239,7 +239,7 @@ inline constexpr double default_gap_floor = 1e-3, default_repulsion_range = 0.05
 struct NumericsParameters {
   bool correction = true;
   std::string reparametrization = "moving";
-  int least_order = 6, most_order = 32;  ///< of vesicles whose order is automatic
+  int least_order = 6, most_order = 24;  ///< of vesicles whose order is automatic
   int upsampling = 0;                    ///< q / p of differentiation; 0: Algorithm 1 chooses per vesicle
   double aliasing_tolerance = 1e-4;
   std::optional<double> gmres_tolerance;  ///< not given: a tenth of the time tolerance, 1e-10 for fixed steps

@@ -137,7 +137,8 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
       moved.position.values += c * moved.sliding.values;
     }
     moved.frame = frame_of(m, motion.velocity, problem.flows, time);
-    moved.frame.spin_up = (moved.frame.motion.rotation - v.frame.motion.rotation) / problem.dt;
+    if (!v.history.levels.empty())  // how a start turns is not known well
+      moved.frame.spin_up = (moved.frame.motion.rotation - v.frame.motion.rotation) / problem.dt;
     moved.motion = std::move(motion);
     moved.error = estimated_errors(v, problem.dt, moved.position, order).back();
     moved.history = pushed(v.history, {v.position, v.motion, v.sliding, problem.dt}, past_levels);

@@ -100,7 +100,9 @@ std::vector<SpaceError> estimate_resolution(const Model& s, const Dynamics& befo
 
 std::vector<int> orders_for(const Model& s, const Dynamics& before, double dt, std::span<const SpaceError> errors) {
   const NumericsParameters& n = s.scene.numerics;
-  const double allowed = allowed_error(s, before, dt) / dt;
+  // Where nothing moves, what adds up to a share of the tolerance by the end may be left.
+  const double allowed =
+      std::max(allowed_error(s, before, dt) / dt, 0.3 * tolerance_of(s.scene.time) / s.scene.time.end);
   std::vector<int> orders;
   for (std::size_t k = 0; k < before.vesicles.size(); ++k) {
     const int order = before.vesicles[k].position.order;

@@ -111,9 +111,9 @@ TEST_CASE("more steps or frames than anybody can wait for are refused, whichever
 
 TEST_CASE("values of the wrong type are told with line and column", "[scene]") {
   CHECK(error_of(replaced("order = 12", "order = \"12\"")) ==
-        "s.toml:14:9: 'order' must be a whole number, not the text \"12\"");
+        "s.toml:14:9: 'order' must be \"auto\" or a whole number, not the text \"12\"");
   CHECK(error_of(replaced("order = 12", "order = 12.5")) ==
-        "s.toml:14:9: 'order' must be a whole number, not the number 12.5");
+        "s.toml:14:9: 'order' must be \"auto\" or a whole number, not the number 12.5");
   CHECK_THAT(error_of(replaced("order = 12", "center = [1, 2]")),
              Contains("s.toml:14:10") && Contains("three numbers"));
   CHECK_THAT(error_of(replaced("order = 12", "center = [1, 2, \"x\"]")), Contains("s.toml:14:17"));
@@ -242,10 +242,11 @@ TEST_CASE("numbers on the command line may lack the digit before or after their 
 TEST_CASE("a number without a fraction is a whole number, with a point or without", "[scene]") {
   CHECK(parse_scene(replaced("order = 12", "order = 8.0"), "s.toml", ".").scene.vesicles[0].order == 8);
   CHECK(parse_scene(good, "s.toml", ".", {"view.size=[640.0, 3.6e2]"}).view.size == std::vector<int>{640, 360});
-  CHECK_THAT(error_of(replaced("order = 12", "order = 8.5")), Contains("must be a whole number, not the number 8.5"));
-  CHECK_THAT(error_of(good, {"vesicle.order=inf"}), Contains("must be a whole number"));
-  CHECK_THAT(error_of(good, {"vesicle.order=nan"}), Contains("must be a whole number"));
-  CHECK_THAT(error_of(good, {"vesicle.order=1e300"}), Contains("must be a whole number"));
+  CHECK_THAT(error_of(replaced("order = 12", "order = 8.5")),
+             Contains("must be \"auto\" or a whole number, not the number 8.5"));
+  CHECK_THAT(error_of(good, {"vesicle.order=inf"}), Contains("must be \"auto\" or a whole number"));
+  CHECK_THAT(error_of(good, {"vesicle.order=nan"}), Contains("must be \"auto\" or a whole number"));
+  CHECK_THAT(error_of(good, {"vesicle.order=1e300"}), Contains("must be \"auto\" or a whole number"));
   CHECK_THAT(error_of(good, {"vesicle.order=1e12"}), Contains("at most 64"));
 }
 

@@ -20,7 +20,7 @@ with tempfile.TemporaryDirectory() as folder:
     with h5py.File(path, "r") as file:
         count = int(file["count"][()])
         assert count >= 1
-        assert file.attrs["format"] == 2
+        assert file.attrs["format"] == 3
         assert b"[time]" in file["scene"][()]
         position = file["position"][:count]
         order = int(file["order"][0, 0])

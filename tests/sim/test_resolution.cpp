@@ -51,7 +51,7 @@ VesicleMeasures last_measures(const Run& run) {
 
 /// A flow that begins after a rest: what suits the rest does not suit the flow.
 Scene late_flow() {
-  Scene scene = followed(3e-4, 1.2, 1);
+  Scene scene = followed(1e-3, 1.2, 1);
   scene.flows[0].time_factor = "step";
   scene.flows[0].from = 0.3;
   scene.flows[0].rate = 2;
@@ -63,12 +63,12 @@ Scene late_flow() {
 
 TEST_CASE("an automatic order gives what a high order gives, to the tolerance") {
   const double lambda = GENERATE(1.0, 10.0);
-  Scene fine = followed(1e-5, 3, lambda);
-  fine.vesicles[0].order = 14;
+  Scene fine = followed(3e-5, 2, lambda);
+  fine.vesicles[0].order = 12;
   const VesicleMeasures expected = last_measures(Run(fine));
   int before = 0;
   for (const double tolerance : {1e-2, 3e-4}) {
-    const Run run(followed(tolerance, 3, lambda));
+    const Run run(followed(tolerance, 2, lambda));
     REQUIRE(run.outcome.end == SimulationEnd::finished);
     const VesicleMeasures m = last_measures(run);
     const TrajectoryReader reader(run.path);
@@ -169,7 +169,7 @@ TEST_CASE("a run whose orders change is the same, byte for byte, where it was in
   const std::string bytes = support::read_file(whole.path);
   std::size_t change = 0;
   while (steps[change].vesicles[0].degree == first) ++change;
-  for (const std::size_t pause : {change - 1, change, change + 1, steps.size() - 1}) {
+  for (const std::size_t pause : {change, change + 1, steps.size() - 1}) {
     INFO("after " << pause << " of " << steps.size() << " steps");
     CHECK(support::read_file(Run(scene, int(pause)).path) == bytes);
   }
