@@ -94,7 +94,8 @@ std::vector<render::Plot> spectra_plots(const render::FigureInput& input) {
     position.curves.push_back(std::move(x));
     curvature.curves.push_back(std::move(k));
   }
-  const int p = input.states.front().vesicles.front().position.order;
+  int p = 0;  // an order may change
+  for (const sim::State& state : input.states) p = std::max(p, state.vesicles.front().position.order);
   position.x_range = render::Range{0, static_cast<double>(p)};
   curvature.x_range = render::Range{0, 4.0 * p};
   return {position, curvature};
