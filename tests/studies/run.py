@@ -2,7 +2,8 @@
 """Long runs against reference values: run.py PROGRAM [PAGE] [-k WORD].
 
 Simulates every case below with PROGRAM, measures the exported table, and writes PAGE (Markdown; default: standard
-output). Status 1 when a value misses its reference. -k takes only the cases whose name contains WORD.
+output). Status 1 when a value misses its reference. -k takes only the cases whose name contains WORD; a PAGE that is there
+then keeps its other sections and its head.
 """
 
 import argparse
@@ -12,6 +13,7 @@ import io
 import math
 import os
 import resource
+import struct
 import subprocess
 import sys
 import tempfile
@@ -26,8 +28,8 @@ class Study:
     def __init__(self, program, folder):
         self.program, self.folder, self.count, self.failures = program, Path(folder), 0, 0
 
-    def run(self, scene, *changes):
-        """Rows of the exported table, as dictionaries of numbers, and the command."""
+    def simulate(self, scene, *changes):
+        """The trajectory of a scene with changes, and the processor time it took."""
         self.count += 1
         file = self.folder / f"{self.count}.h5"
         command = ["simulate", f"scenes/{scene}.toml"] + [word for change in changes for word in ("--set", change)]
@@ -40,18 +42,48 @@ class Study:
             print(done.stderr, file=sys.stderr)
             self.failures += 1
             raise RuntimeError(done.stderr.strip())
+        return file, seconds
+
+    def table(self, file):
+        """Rows of the exported table, as dictionaries of numbers."""
         table = subprocess.run([self.program, "export", str(file), "--csv", "-"], check=True, capture_output=True, text=True)
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(io.StringIO(table.stdout))]
+
+    def run(self, scene, *changes):
+        """Rows of the exported table, and the processor time."""
+        file, seconds = self.simulate(scene, *changes)
+        rows = self.table(file)
         file.unlink()
-        rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(io.StringIO(table.stdout))]
         return rows, seconds
+
+    def mesh(self, file, time, latitudes=32):
+        """Vertices of vesicle 0 in the state nearest to a time, as dictionaries of numbers (of single precision)."""
+        folder = file.with_suffix(".ply")
+        subprocess.run([self.program, "export", str(file), "--ply", str(folder), "--time", str(time), "--latitudes",
+                        str(latitudes), "-q", "--force"], check=True, capture_output=True)
+        (path,) = folder.iterdir()
+        head, body = path.read_bytes().split(b"end_header\n", 1)
+        path.unlink()
+        words = [line.split() for line in head.decode().split("element face")[0].splitlines()]
+        count = next(int(word[2]) for word in words if word[:2] == ["element", "vertex"])
+        names = [word[2] for word in words if word[0] == "property"]
+        row = struct.Struct(f"<{len(names)}f")
+        return [dict(zip(names, row.unpack_from(body, k * row.size))) for k in range(count)]
+
+    def row(self, what, measured, expected, good):
+        """A row of the table, its texts as they are."""
+        self.failures += not good
+        return f"| {what} | {measured} | {expected} | {'pass' if good else 'FAIL'} |"
 
     def check(self, what, measured, expected, tolerance, digits=4):
         """A row of the table; expected None: only its size counts."""
         good = abs(measured - (expected or 0)) <= tolerance
-        self.failures += not good
         if expected is None:
-            return f"| {what} | {measured:.1e} | below {tolerance:g} | {'pass' if good else 'FAIL'} |"
-        return f"| {what} | {measured:.{digits}f} | {expected:g} ± {tolerance:g} | {'pass' if good else 'FAIL'} |"
+            return self.row(what, f"{measured:.1e}", f"below {tolerance:g}", good)
+        return self.row(what, f"{measured:.{digits}f}", f"{expected:g} ± {tolerance:g}", good)
+
+
+HEAD = ["| quantity | measured | expected | |", "|---|---|---|---|"]
 
 
 def cosine_ratio(rows, nu):
@@ -282,6 +314,15 @@ CASES = {"rigid-motions": rigid_motions, "spheres": spheres, "tank-treading": ta
          "quasi-spherical": quasi_spherical, "literature": literature, "poiseuille": poiseuille, "relaxation": relaxation, "schemes": schemes}
 
 
+def merged(before, text):
+    """The page with the sections of `text` in the place of its own; those it does not have follow in the order of CASES."""
+    head, *old = ("\n" + before).split("\n## ")
+    named = {part.split("\n")[0]: part for part in old + ("\n" + text).split("\n## ")[1:]}
+    names = [name.capitalize() for name in CASES if name.capitalize() in named]
+    names += [name for name in named if name not in names]
+    return "\n## ".join([head] + [named[name].rstrip("\n") + "\n" for name in names])[1:]
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     arguments.add_argument("program")
@@ -302,9 +343,7 @@ def main():
             page += [f"## {name.capitalize()}", "", " ".join(case.__doc__.split()), ""]
             try:
                 rows = case(study)
-                if not rows[1].startswith("|---"):
-                    page += ["| quantity | measured | expected | |", "|---|---|---|---|"]
-                page += rows
+                page += rows if rows[1].startswith("|---") else HEAD + rows
             except RuntimeError as error:
                 page += [f"Failed: {error}"]
             page.append("")
@@ -312,7 +351,9 @@ def main():
     if given.page:
         path, paper = Path(given.page), "\n## The paper, item by item"
         before = path.read_text() if path.exists() else ""
-        if paper in before:  # what `tanktread reproduce` measured stays
+        if given.k and before:
+            text = merged(before, text)
+        elif paper in before:  # what `tanktread reproduce` measured stays
             text += before[before.index(paper):]
         path.write_text(text)
     else:
