@@ -291,6 +291,31 @@ def relaxation(s):
     return out
 
 
+def equilibria(s):
+    """Where shapes without flow come to rest: `scenes/relaxation.toml`, κ_b = 1, tolerance 1e-3, up to t = 200, energy E/(8πκ) against
+    that of exact axisymmetric minima (8 digits). Errors must fall with the order like those of any smooth shape, by tens for each
+    four degrees: asked for are 1e-7 at ν = 0.95 from p = 12, and for the more slender ν = 0.85 2e-5 at p = 12 and 1e-6 at p = 16.
+    Oblates are equilibria too, but saddles: from rounding errors a second axis grows, and they turn into prolates at t = 80 to
+    100. Their plateau is where the energy changes least before t = 40, with the same bounds; then they must arrive at the prolate. (The
+    prolate that they become has the poles of the grid at its side, not at its ends, and is resolved better so.)"""
+    exact = {("prolate", 0.95): 1.09556488, ("prolate", 0.85): 1.28567596,
+             ("oblate", 0.95): 1.10611464, ("oblate", 0.85): 1.33354267}
+    bound = {(0.95, 8): 2e-6, (0.95, 12): 1e-7, (0.95, 16): 1e-7, (0.85, 12): 2e-5, (0.85, 16): 1e-6}
+    out = ["| start | ν | p | plateau before 40, less exact | end, less exact prolate | bound | axes at the end | |",
+           "|---|---|---|---|---|---|---|---|"]
+    for shape, nu, order in (("prolate", 0.95, 8), ("prolate", 0.95, 12), ("prolate", 0.95, 16), ("prolate", 0.85, 12),
+                             ("prolate", 0.85, 16), ("oblate", 0.95, 12), ("oblate", 0.85, 12)):
+        rows, _ = s.run("relaxation", f"vesicle.shape={shape}", f"vesicle.reduced_volume={nu}", f"vesicle.order={order}", "time.end=200",
+                        "time.tolerance=1e-3", "time.save_every=1")
+        energy, allowed = [row["energy"] for row in rows], bound[nu, order]
+        start = min(range(30), key=lambda k: abs(energy[k + 10] - energy[k]))
+        plateau, end = energy[start + 5] - exact[shape, nu], energy[-1] - exact["prolate", nu]
+        axes = ", ".join(f"{rows[-1][f'axis_{k}']:.4f}" for k in (1, 2, 3))
+        out.append(s.row(f"{shape} | {nu} | {order}", f"{plateau:+.1e} | {end:+.1e}", f"{allowed:g} | {axes}",
+                         max(abs(plateau), abs(end)) < allowed))
+    return out
+
+
 def schemes(s):
     """Error of the half turn of the case 'tumbling' (p = 8) against its value at γ̇Δt = 0.0125 with bdf2, by scheme and step, with the
     correction and without reparametrization. Times: processor time of the run, saved states every 0.2 included, by the
@@ -337,8 +362,8 @@ def jeffery(s):
     """A prolate of axes 2:1 (ν = 0.8950367), κ_b = 0.01, in shear, p = 12, tolerance 1e-4 (`scenes/tumbling.toml` with
     `vesicle.viscosity_contrast`): the time of half a turn, from −0° to −180°. A membrane that cannot stretch round a fluid that
     cannot be sheared is a rigid body, so the limit λ → ∞ is Jeffery's orbit, π(r + 1/r) = 7.853982 for r = 2. The correction is
-    c/λ + d/λ² + ...: times λ it must tend to a constant, and two values of λ extrapolate the limit but for −d/(λ₁λ₂), with d ≈ 144
-    from the first two rows: 0.005; three values but for a term of the next order and for errors of resolution of some 1e-4.
+    c/λ + d/λ² + ...: times λ it must tend to a constant, and two values of λ extrapolate the limit but for −d/(λ₁λ₂), with d ≈
+    144 from the first two rows: 0.005; three values but for a term of the next order and for errors of resolution of some 1e-4.
     Keller and Skalak's ellipsoid of fixed shape has the same limit and a c of the same size; no exact c is known to us."""
     out = ["| λ | half turn | (half turn − 7.853982) λ | that of Keller and Skalak |", "|---|---|---|---|"]
     limit, (f0, f1, f2) = 2.5 * math.pi, keller_skalak(2)
@@ -371,16 +396,18 @@ def bisect(low, high, width, beyond):
 
 
 def border(s):
-    """Where a prolate in shear stops tank-treading, and where it begins to tumble, over (ν, λ): `scenes/tumbling.toml` with p = 8
-    (tolerance 1e-3), γ̇ = 1, up to γ̇t = 100, by bisection of λ to ± 0.01 and ± 0.02. The motion is told by the unwrapped
-    inclination. Treading: started at +15° it settles at a positive angle and never falls below 0. Tumbling: started along the flow
-    it passes −90°. Between the two the angle swings about 0 with a shape that breathes (vacillating breathing, trembling). Starts
-    matter there, since the swing dies out slowly if at all, and the second border is that of this start, within the shear plane.
-    Keller and Skalak's ellipsoid of fixed shape knows one border only (B = 1), and no κ_b. Expected: both borders grow with ν, and
-    hardly depend on κ_b, since both capillary numbers are large; simulations lie above Keller and Skalak for ν ≤ 0.9. The share of
-    25 % is what a border from a theory without deformation can be trusted for at ν = 0.8, and 10 % from ν = 0.9. The quasi-spherical
-    theory in strong shear ends treading at λ = (120 √(2π/15)/√Δ − 32)/23, where its angle is 0. It is the limit Δ → 0, where Keller
-    and Skalak's is not: at ν = 0.99 and 0.999 the border must tend to it with an error like √Δ."""
+    """Where a prolate in shear stops tank-treading, and where it begins to tumble, over (ν, λ): `scenes/tumbling.toml` with p =
+    8 (tolerance 1e-3), γ̇ = 1, up to γ̇t = 100, by bisection of λ to ± 0.01 and ± 0.02. The motion is told by the unwrapped
+    inclination. Treading: started at +15° it settles at a positive angle and never falls below 0. Tumbling: started along the
+    flow it passes −90°. Between the two the angle swings about 0 with a shape that breathes (vacillating breathing or
+    trembling; Abreu et al. 2014, arXiv:1311.7341, review it). Starts matter there, since the swing dies out slowly if at all,
+    and the second border is that of this start, within the shear plane. Keller and Skalak's ellipsoid of fixed shape knows one
+    border only (B = 1), and no κ_b. Expected: both borders grow with ν and hardly depend on κ_b (3 %), since both capillary
+    numbers, 10 and 100, are large; vesicles, which deform, tread up to a higher λ than Keller and Skalak's ellipsoid for ν ≤
+    0.9, and come nearer to it as ν grows. No theory tells by how much: the share of 25 % is a bound for gross errors only. The
+    quasi-spherical theory in strong shear ends treading at λ = (120 √(2π/15)/√Δ − 32)/23, where its angle is 0. It is the limit
+    Δ → 0, which Keller and Skalak's is not: at ν = 0.99 and 0.999 the border must tend to it with an error like √Δ, the next
+    order of that theory, and lies below Keller and Skalak there (14.07 and 41.98)."""
     out = ["| ν | κ_b | treading up to λ | tumbling from λ | Keller, Skalak | first border over theirs |", "|---|---|---|---|---|---|"]
     treading, tumbling_from = {}, {}
 
@@ -410,12 +437,23 @@ def border(s):
             steps = [found[b, modulus] - found[a, modulus] for a, b in zip(volumes, volumes[1:])]
             out.append(s.row(f"κ_b = {modulus}: {what}, least growth from one ν to the next", f"{min(steps):.2f}", "above 0",
                              min(steps) > 0))
-        for nu, share in ((0.8, 0.25), (0.9, 0.1), (0.95, 0.1)):
-            out.append(s.check(f"κ_b = {modulus}, ν = {nu}: end of treading over Keller and Skalak's, less 1",
-                               treading[nu, modulus] / theory[nu] - 1, 0, share, 3))
+        above = [treading[nu, modulus] / theory[nu] - 1 for nu in volumes]
+        out.append(s.check(f"κ_b = {modulus}: end of treading over Keller and Skalak's, less 1, farthest from 0", max(above, key=abs),
+                           0, 0.25, 3))
+        steps = [a - b for a, b in zip(above, above[1:])]
+        out.append(s.row(f"κ_b = {modulus}: its least decrease from one ν to the next", f"{min(steps):.3f}", "above 0", min(steps) > 0))
         for nu in (0.8, 0.9):
             above = treading[nu, modulus] - theory[nu]
-            out.append(s.row(f"κ_b = {modulus}, ν = {nu}: end of treading less Keller and Skalak's", f"{above:.2f}", "above 0", above > 0))
+            out.append(s.row(f"κ_b = {modulus}, ν = {nu}: end of treading less Keller and Skalak's", f"{above:.2f}", "above 0",
+                             above > 0))
+    for away, beyond in ((-0.05, False), (0.05, True)):
+        contrast = treading[0.9, 0.1] + away
+        rows, _ = s.run("tumbling", "vesicle.order=12", "time.tolerance=1e-4", "vesicle.reduced_volume=0.9", "time.save_every=0.5",
+                        "vesicle.bending_modulus=0.1", "time.end=100", "vesicle.axis=[0.966,0,0.259]",
+                        f"vesicle.viscosity_contrast={contrast}")
+        lowest = min(unwrapped(rows))
+        out.append(s.row(f"κ_b = 0.1, ν = 0.9, p = 12, tolerance 1e-4: least angle at λ = {contrast:.2f}", f"{lowest:.2f}",
+                         "below 0" if beyond else "above 0", (lowest < 0) == beyond))
     for nu in volumes:
         out.append(s.check(f"ν = {nu}: end of treading at κ_b = 0.1 over that at 0.01, less 1",
                            treading[nu, 0.1] / treading[nu, 0.01] - 1, 0, 0.03, 3))
@@ -432,13 +470,14 @@ def border(s):
 
 
 def sedimentation(s):
-    """A sinking sphere (`scenes/sedimentation.toml` with `vesicle.reduced_volume=1`, `vesicle.axis=[1,0,0]`, Δρ = 1, g = 1 along −z)
-    for a time of 2. A spherical membrane that cannot stretch neither deforms nor, by symmetry, flows: it sinks as a rigid sphere,
-    with Stokes' (2/9) Δρ g R²/μ, whatever λ and κ_b, and with a tension of (3/2) μ U cos θ, θ from the lower pole, whose largest
-    value is Δρ g R²/3 (derived from the traction (3/2) μU/R on a rigid sphere). Linear solves to 1e-12 and orders that represent a
-    sphere exactly leave rounding and quadrature: 1e-8. The tension over all vertices of a mesh is exported in single precision: 1e-6."""
-    out = ["| λ | R | p | speed / ((2/9) Δρ g R²) − 1 | sideways speed / speed | largest tension / (Δρ g R²/3) − 1 | tension on the mesh, "
-           "largest error | |", "|---|---|---|---|---|---|---|---|"]
+    """A sinking sphere (`scenes/sedimentation.toml` with `vesicle.reduced_volume=1`, `vesicle.axis=[1,0,0]`, Δρ = 1, g = 1
+    along −z) for a time of 2. A spherical membrane that cannot stretch neither deforms nor, by symmetry, flows: it sinks as a
+    rigid sphere, with Stokes' (2/9) Δρ g R²/μ, whatever λ and κ_b, and with a tension of (3/2) μ U cos θ, θ from the lower
+    pole, whose largest value is Δρ g R²/3 (derived from the traction (3/2) μU/R on a rigid sphere). Linear solves to 1e-12 and
+    orders that represent a sphere exactly leave rounding and quadrature: 1e-8. The tension over all vertices of a mesh is
+    exported in single precision: 1e-6."""
+    out = ["| λ | R | p | speed / ((2/9) Δρ g R²) − 1 | sideways speed / speed | largest tension / (Δρ g R²/3) − 1 | "
+           "tension on the mesh, largest error | |", "|---|---|---|---|---|---|---|---|"]
     for contrast, radius, order in ((0.1, 1, 8), (1, 1, 8), (10, 1, 8), (100, 1, 8), (5, 0.5, 8), (5, 2, 8), (5, 1, 6), (5, 1, 12)):
         file, _ = s.simulate("sedimentation", f"vesicle.viscosity_contrast={contrast}", f"vesicle.radius={radius}",
                              f"vesicle.order={order}", "vesicle.reduced_volume=1", "vesicle.axis=[1,0,0]",
@@ -456,15 +495,16 @@ def sedimentation(s):
 
 
 def reversibility(s):
-    """Without bending (κ_b = 0) nothing in the equations has a direction of time: the shear γ̇ sin(πt/T) for a time of T and the
-    same back until 2T brings every point to where it was (`scenes/tank-treading.toml`, p = 8, `flow.time_factor="oscillating"`,
-    `flow.phase=-π/2`, `numerics.reparametrization="off"` so that points can be compared). Measured: distance of the vertices of the
-    mesh from where they started (root of the mean square, R₀; single precision: 1e-7). Expected: it falls like the tolerance, at
-    least fivefold a decade, and is below what the tolerance promises for the whole way, 0.3 γ̇ · 2T times the tolerance (see
-    [stepping](stepping.md)). For T = 4 at λ = 1 there is no such promise: on the way back the flow compresses the membrane, and
-    without bending all wavelengths buckle, so that errors grow by a factor of a thousand or more before they end. Reversal still
-    holds in the limit, and the table shows it; only a fall by a factor of 2 a decade on the average is asked for."""
-    out = ["| λ | T | largest angle | tolerance 1e-2 | 1e-3 | 1e-4 | 1e-5 | least fall a decade, expected | | below the promise |",
+    """Without bending (κ_b = 0) nothing in the equations has a direction of time: the shear γ̇ sin(πt/T) for a time of T and
+    the same back until 2T brings every point to where it was (`scenes/tank-treading.toml`, p = 8,
+    `flow.time_factor="oscillating"`, `flow.phase=-π/2`, `numerics.reparametrization="off"` so that points can be compared).
+    Measured: distance of the vertices of the mesh from where they started (root of the mean square, R₀; single precision:
+    1e-7). Expected: it falls like the tolerance, at least fivefold a decade, and is below what the tolerance promises for the
+    whole way, 0.3 γ̇ · 2T times the tolerance (see [stepping](stepping.md)). For T = 4 at λ = 1 there is no such promise: on
+    the way back the flow compresses the membrane, and without bending all wavelengths buckle, so that errors grow by a factor
+    of a thousand or more before they end. Reversal still holds in the limit, and the table shows it; only a fall by a factor of
+    2 a decade on the average is asked for."""
+    out = ["| λ | T | largest angle | tolerance 1e-2 | 1e-3 | 1e-4 | 1e-5 | fall a decade | below the promise | |",
            "|---|---|---|---|---|---|---|---|---|---|"]
     for contrast, duration in ((1, 1), (5, 1), (5, 4), (5, 10), (1, 4)):
         errors = []
@@ -484,18 +524,19 @@ def reversibility(s):
         good = fall > least and (kept or buckles)
         s.failures += not good
         out.append(f"| {contrast} | {duration} | {turned:.1f} | " + " | ".join(f"{error:.1e}" for error in errors) +
-                   f" | {fall:.1f}, above {least} | {'pass' if good else 'FAIL'} | {'not asked for' if buckles else 'yes' if kept else 'no'} |")
+                   f" | {fall:.1f}, above {least} | {'not asked for' if buckles else 'yes' if kept else 'no'} | "
+                   f"{'pass' if good else 'FAIL'} |")
     return out
 
 
 def faxen(s):
     """A vesicle beside the axis of a parabolic flow u_x = −a (y² + z²), a = 0.1 (`scenes/relaxation.toml` with
-    `flow.kind="poiseuille"`, p = 8, up to t = 20). A sphere without force moves, by Faxén's law, with u + (R²/6) ∇²u = u − (2/3) a R²
-    at its centre, of any radius in this flow, whose ∇⁴u is zero; a membrane that cannot stretch adds only flows on the sphere that
-    have no divergence, and those carry no force. Spheres are held round to 3e-5 R₀ at the full strength of the flow, so the speed
-    is allowed an error of 1e-4 times 2 a R max(z₀, R), and so is the one across. Deformed vesicles lag less; the lag over Faxén's,
-    over the last ten time units, less 1, must vanish with the excess area: like Δ, so that its share of Δ is the same for ν = 0.999, 0.99
-    and 0.95 to within 20 %, for λ = 1. They drift towards the axis."""
+    `flow.kind="poiseuille"`, p = 8, up to t = 20). A sphere without force moves, by Faxén's law, with u + (R²/6) ∇²u = u −
+    (2/3) a R² at its centre, of any radius in this flow, whose ∇⁴u is zero; a membrane that cannot stretch adds only flows on
+    the sphere that have no divergence, and those carry no force. Spheres are held round to 3e-5 R₀ at the full strength of the
+    flow, so the speed is allowed an error of 1e-4 times 2 a R max(z₀, R), and so is the one across. Deformed vesicles lag less;
+    the lag over Faxén's, over the last ten time units, less 1, must vanish with the excess area: like Δ, so that its share of Δ
+    is the same for ν = 0.999, 0.99 and 0.95 to within 20 %, for λ = 1. They drift towards the axis."""
     out = ["| ν | R | z₀ | λ | lag / ((2/3) a R²) − 1 | over Δ | drift across, dz/dt | |", "|---|---|---|---|---|---|---|---|"]
     a, shares = 0.1, []
     for nu, radius, z, contrast in ((1, 0.5, 1, 1), (1, 1, 1, 1), (1, 1, 1, 10), (1, 2, 1, 1), (1, 1, 3, 1), (1, 1, 0, 1),
@@ -506,7 +547,8 @@ def faxen(s):
                         "vesicle.axis=[1,0,0]")
         rows = rows[len(rows) // 2:]
         time = rows[-1]["time"] - rows[0]["time"]
-        undisturbed = sum(-a * (b["center_z"] ** 2 + c["center_z"] ** 2) / 2 * (c["time"] - b["time"]) for b, c in zip(rows, rows[1:]))
+        undisturbed = sum(-a * (b["center_z"] ** 2 + c["center_z"] ** 2) / 2 * (c["time"] - b["time"])
+                          for b, c in zip(rows, rows[1:]))
         lag = (undisturbed - rows[-1]["center_x"] + rows[0]["center_x"]) / time / (2 / 3 * a * radius**2) - 1
         drift = (rows[-1]["center_z"] - rows[0]["center_z"]) / time
         if nu == 1:
@@ -522,12 +564,13 @@ def faxen(s):
 
 def encounter(s):
     """Two prolates (ν = 0.85, κ_b = 0.01, p = 8) on neighbouring streamlines of a shear flow pass each other
-    (`scenes/encounter.toml`): their offset across the flow, when they are as far apart along it as at the start, less the offset
-    at the start. They start 16 R₀ apart along the flow, ten times the offset for the larger offsets. Expected: positive (they push
-    each other aside and do not come back: a vesicle has normal stresses along and across the flow, unlike a rigid sphere), smaller
-    the larger the offset, and, far apart, like 1/offset²: two force dipoles with S_xx, S_zz move each other across by
-    ∝ ∫ z (x² S_xx + z² S_zz) r⁻⁵ dx / (γ̇ z) ∝ 1/z². λ = 1 treads, and at λ = 5 nearly does no more. Errors: the tolerance 1e-3 promises
-    less than 0.3 γ̇t times 1e-3 of position, some 0.01; asked for is half of it from 1e-3 to 1e-4."""
+    (`scenes/encounter.toml`): their offset across the flow, when they are as far apart along it as at the start, less the
+    offset at the start. They start 16 R₀ apart along the flow, ten times the offset for the larger offsets. Expected: positive
+    (they push each other aside and do not come back: a vesicle has normal stresses along and across the flow, unlike a rigid
+    sphere), smaller the larger the offset, and, far apart, like 1/offset²: two force dipoles with S_xx, S_zz move each other
+    across by ∝ ∫ z (x² S_xx + z² S_zz) r⁻⁵ dx / (γ̇ z) ∝ 1/z². λ = 1 treads at 24°, λ = 5 at a few degrees. The ratio at
+    offsets 4 and 8 may miss 4 by 15 %, of the order of R₀/offset. Errors: the tolerance 1e-3 promises less than 0.3 γ̇t times
+    1e-3 of position, some 0.02 for the small offsets; asked for is a twentieth of it from 1e-3 to 1e-4."""
     out = ["| λ | offset at the start | displacement, tolerance 1e-3 | 1e-4 | difference | times (offset + half the displacement)² |",
            "|---|---|---|---|---|---|"]
 
@@ -548,14 +591,16 @@ def encounter(s):
             coarse, fine = (displacement(contrast, offset, tolerance) for tolerance in (1e-3, 1e-4))
             found[contrast, offset] = fine
             worst[contrast] = max(worst[contrast], abs(coarse - fine))
-            out.append(f"| {contrast} | {offset} | {coarse:.4f} | {fine:.4f} | {coarse - fine:+.4f} | {fine * (offset + fine / 2) ** 2:.3f} |")
+            out.append(f"| {contrast} | {offset} | {coarse:.4f} | {fine:.4f} | {coarse - fine:+.4f} | "
+                       f"{fine * (offset + fine / 2) ** 2:.3f} |")
     out += ["", *HEAD]
     for contrast in (1, 5):
-        steps = [found[contrast, a] - found[contrast, b] for a, b in zip(offsets, offsets[1:])]
-        out.append(s.row(f"λ = {contrast}: least displacement", f"{found[contrast, 8]:.4f}", "above 0", min(found[contrast, o] for o in offsets) > 0))
-        out.append(s.row(f"λ = {contrast}: least decrease from one offset to the next", f"{min(steps):.4f}", "above 0", min(steps) > 0))
-        out.append(s.check(f"λ = {contrast}: largest difference between the tolerances", worst[contrast], None, 0.005))
-        out.append(s.check(f"λ = {contrast}: displacement at offset 4 over that at 8", found[contrast, 4] / found[contrast, 8], 4, 0.6, 2))
+        own = [found[contrast, offset] for offset in offsets]
+        step = min(a - b for a, b in zip(own, own[1:]))
+        out.append(s.row(f"λ = {contrast}: least displacement", f"{min(own):.4f}", "above 0", min(own) > 0))
+        out.append(s.row(f"λ = {contrast}: least decrease from one offset to the next", f"{step:.4f}", "above 0", step > 0))
+        out.append(s.check(f"λ = {contrast}: largest difference between the tolerances", worst[contrast], None, 0.001))
+        out.append(s.check(f"λ = {contrast}: displacement at offset 4 over that at 8", own[-2] / own[-1], 4, 0.6, 2))
     return out
 
 
@@ -583,27 +628,30 @@ def out_of_plane(vertices):
 
 
 def long_runs(s):
-    """Tank-treading (`scenes/tank-treading.toml`, λ = 1) and tumbling (`scenes/tumbling.toml`, λ = 10) with p = 8, tolerance 1e-3,
-    up to γ̇t = 1000, some 160 turns of the membrane or 76 half turns of the body. What an inaccurate method spoils in the long run: area and volume
-    are corrected in every step and must stay to rounding, 1e-11; the spectrum's tail must not grow (grid points that crowd or a shape that
-    roughens would raise it); treading must stay as it was at γ̇t = 100, to within what the energy of order 8 wanders about, 2e-4 (at
-    p = 12 it does so by 1e-4), and 0.02°. Tumbling is not periodic to begin with. Its shape settles with the time of bending,
-    μR³/κ_b = 100, so half turns get shorter until γ̇t ~ 1000 for κ_b = 0.01, and until some 400 for κ_b = 0.1. Rows compare
-    with a tolerance of 1e-4, where the same must happen (0.01: the error that the tolerance 1e-3 leaves in a half turn is 0.005).
-    And tumbling in the plane of shear is unstable: a tilt out of it starts from rounding errors at 1e-9 and grows tenfold in some 130
-    (the rate is the same for tolerances of 1e-3 and 1e-4 and p = 8 and 12), until it shortens the last half turns. The share of second moments that mixes y with x and z tells it."""
+    """Tank-treading (`scenes/tank-treading.toml`, λ = 1) and tumbling (`scenes/tumbling.toml`, λ = 10) with p = 8, tolerance
+    1e-3, up to γ̇t = 1000, some 160 turns of the membrane or 76 half turns of the body. What an inaccurate method spoils in the
+    long run: area and volume are corrected in every step and must stay to rounding, 1e-11; the spectrum's tail must not grow
+    (grid points that crowd or a shape that roughens would raise it); treading must stay as it was at γ̇t = 100, to within what
+    the energy of order 8 wanders about, 2e-4 (at p = 12 it does so by 1e-4), and 0.02°. Tumbling is not periodic to begin with.
+    Its shape settles with the time of bending, μR³/κ_b = 100, so half turns get shorter until γ̇t ~ 1000 for κ_b = 0.01, and
+    until some 400 for κ_b = 0.1. Rows compare with a tolerance of 1e-4, where the same must happen (0.01: the error that the
+    tolerance 1e-3 leaves in a half turn is 0.005). And tumbling in the plane of shear is unstable: a tilt out of it starts from
+    rounding errors at 1e-9 and grows tenfold in some 130 (the rate is the same for tolerances of 1e-3 and 1e-4 and p = 8 and
+    12), until it shortens the last half turns. The share of second moments that mixes y with x and z tells it."""
     out = []
     file, _ = s.simulate("tank-treading", "vesicle.order=8", "time.end=1000", "time.save_every=1")
     rows = s.table(file)
     (early, late), then, now = tails(s, file, ((80, 100), (980, 1000))), rows[100], rows[1000]
     file.unlink()
-    out.append(s.check("treading: angle (degrees) at 1000 against 100", now["inclination_deg"], round(then["inclination_deg"], 3), 0.02, 3))
+    out.append(s.check("treading: angle (degrees) at 1000 against 100", now["inclination_deg"], round(then["inclination_deg"], 3),
+                       0.02, 3))
     out.append(s.check("treading: energy", now["energy"], round(then["energy"], 5), 4e-4, 5))
     for axis in ("axis_1", "axis_2", "axis_3"):
         out.append(s.check(f"treading: {axis}", now[axis], round(then[axis], 5), 2e-4, 5))
     out.append(s.check("treading: largest area error", largest(rows, "area_error"), None, 1e-11))
     out.append(s.check("treading: largest volume error", largest(rows, "volume_error"), None, 1e-11))
-    out.append(s.row("treading: largest tail of the spectrum, 980 to 1000", f"{late:.4f}", f"at most 1.05 × {early:.4f}, 80 to 100", late <= 1.05 * early))
+    out.append(s.row("treading: largest tail of the spectrum, 980 to 1000", f"{late:.4f}", f"at most 1.05 × {early:.4f}, 80 to 100",
+                     late <= 1.05 * early))
     file, _ = s.simulate("tumbling", "vesicle.order=8", "time.end=1000", "time.save_every=0.5")
     rows = s.table(file)
     early, late = tails(s, file, ((80, 100), (980, 1000)))
@@ -620,18 +668,22 @@ def long_runs(s):
         out.append(s.check(f"tumbling: half turn before {time} against that with a tolerance of 1e-4", mean_near(turns, time),
                            round(mean_near(fine, time), 4), 0.01))
     out.append(f"| tumbling: half turn before 800, 1000 | {mean_near(turns, 800):.4f}, {mean_near(turns, 1000):.4f} | | |")
-    out.append(s.check("tumbling: κ_b = 0.1: half turn before 600 against that before 500", mean_near(stiff, 600), round(mean_near(stiff, 500), 4), 0.002))
-    out.append(f"| tumbling: moments out of the plane at {', '.join(map(str, tilt))} | {', '.join(f'{value:.0e}' for value in tilt.values())} | | |")
+    out.append(s.check("tumbling: κ_b = 0.1: half turn before 600 against that before 500", mean_near(stiff, 600),
+                       round(mean_near(stiff, 500), 4), 0.002))
+    out.append(f"| tumbling: moments out of the plane at {', '.join(map(str, tilt))} | "
+               f"{', '.join(f'{value:.0e}' for value in tilt.values())} | | |")
     out.append(s.check("tumbling: largest area error", largest(rows, "area_error"), None, 1e-11))
     out.append(s.check("tumbling: largest volume error", largest(rows, "volume_error"), None, 1e-11))
-    out.append(s.row("tumbling: largest tail of the spectrum, 980 to 1000", f"{late:.4f}", f"at most 1.05 × {early:.4f}, 80 to 100", late <= 1.05 * early))
+    out.append(s.row("tumbling: largest tail of the spectrum, 980 to 1000", f"{late:.4f}", f"at most 1.05 × {early:.4f}, 80 to 100",
+                     late <= 1.05 * early))
     return out
 
 
 CASES = {"rigid-motions": rigid_motions, "spheres": spheres, "sedimentation": sedimentation, "faxen": faxen, "jeffery": jeffery,
          "tank-treading": tank_treading, "treading-frequency": treading_frequency, "tumbling": tumbling,
          "quasi-spherical": quasi_spherical, "border": border, "literature": literature, "poiseuille": poiseuille,
-         "encounter": encounter, "reversibility": reversibility, "relaxation": relaxation, "schemes": schemes, "long-runs": long_runs}
+         "encounter": encounter, "reversibility": reversibility, "relaxation": relaxation,
+         "equilibria": equilibria, "schemes": schemes, "long-runs": long_runs}
 
 
 def merged(before, text):
