@@ -629,15 +629,17 @@ def out_of_plane(vertices):
 
 def long_runs(s):
     """Tank-treading (`scenes/tank-treading.toml`, λ = 1) and tumbling (`scenes/tumbling.toml`, λ = 10) with p = 8, tolerance
-    1e-3, up to γ̇t = 1000, some 160 turns of the membrane or 76 half turns of the body. What an inaccurate method spoils in the
+    1e-3, up to γ̇t = 1000: some 57 turns of the membrane, 76 half turns of the body. What an inaccurate method spoils in the
     long run: area and volume are corrected in every step and must stay to rounding, 1e-11; the spectrum's tail must not grow
-    (grid points that crowd or a shape that roughens would raise it); treading must stay as it was at γ̇t = 100, to within what
-    the energy of order 8 wanders about, 2e-4 (at p = 12 it does so by 1e-4), and 0.02°. Tumbling is not periodic to begin with.
-    Its shape settles with the time of bending, μR³/κ_b = 100, so half turns get shorter until γ̇t ~ 1000 for κ_b = 0.01, and
-    until some 400 for κ_b = 0.1. Rows compare with a tolerance of 1e-4, where the same must happen (0.01: the error that the
-    tolerance 1e-3 leaves in a half turn is 0.005). And tumbling in the plane of shear is unstable: a tilt out of it starts from
-    rounding errors at 1e-9 and grows tenfold in some 130 (the rate is the same for tolerances of 1e-3 and 1e-4 and p = 8 and
-    12), until it shortens the last half turns. The share of second moments that mixes y with x and z tells it."""
+    (grid points that crowd or a shape that roughens would raise it); treading must stay as it was at γ̇t = 100, to 0.02° and to
+    twice what the energy wanders about, 2e-4 for p = 8 with tolerances of 1e-3 and 1e-4. Tumbling is not periodic to begin
+    with. Its shape settles within a few times that of bending, μR³/κ_b = 100 for κ_b = 0.01 and 10 for κ_b = 0.1, so half turns
+    get shorter, for longer than the run for the first and until about 400 for the second. That is not error that adds up: a
+    tolerance of 1e-4 must show the same, to within 0.01, twice the error of a half turn with 1e-3, which is 0.005; and for κ_b
+    = 0.1 the end must differ by less than that. Besides, tumbling in the plane of shear is unstable here: a tilt out of it
+    starts from rounding errors and grows by four decades from γ̇t = 250 to 600, for tolerances of 1e-3 and 1e-4 and p = 8 and
+    12 alike, until it shortens the last half turns. The second moments that mix y with x and z, as a share of the trace, tell
+    it; whoever needs motion within the plane for so long should know."""
     out = []
     file, _ = s.simulate("tank-treading", "vesicle.order=8", "time.end=1000", "time.save_every=1")
     rows = s.table(file)
@@ -669,7 +671,7 @@ def long_runs(s):
                            round(mean_near(fine, time), 4), 0.01))
     out.append(f"| tumbling: half turn before 800, 1000 | {mean_near(turns, 800):.4f}, {mean_near(turns, 1000):.4f} | | |")
     out.append(s.check("tumbling: κ_b = 0.1: half turn before 600 against that before 500", mean_near(stiff, 600),
-                       round(mean_near(stiff, 500), 4), 0.002))
+                       round(mean_near(stiff, 500), 4), 0.005))
     out.append(f"| tumbling: moments out of the plane at {', '.join(map(str, tilt))} | "
                f"{', '.join(f'{value:.0e}' for value in tilt.values())} | | |")
     out.append(s.check("tumbling: largest area error", largest(rows, "area_error"), None, 1e-11))
