@@ -298,7 +298,9 @@ class Run {
     return std::nullopt;
   }
 
+  /// After an estimate of what degrees are worth.
   std::optional<Rejection> adapt_orders(const Dynamics& before, double dt, std::span<const SpaceError> errors) {
+    if (errors.empty()) return std::nullopt;
     const std::vector<int> orders = orders_for(model_, before, dt, errors);
     Attempt<Dynamics> changed = in_orders(model_, d_, orders);
     if (!changed) return changed.rejection();

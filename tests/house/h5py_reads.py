@@ -69,11 +69,11 @@ with tempfile.TemporaryDirectory() as folder:
 
     def later(other):
         with h5py.File(other, "r+") as file:
-            file.attrs["format"] = 3
+            file.attrs["format"] = 4
 
     def foreign(other):
         with h5py.File(other, "w") as file:
             file["temperature"] = [1.0, 2.0]
 
-    assert "has format 3; this program reads formats 1 to 2" in refusal(later, "later.h5")
+    assert "has format 4; this program reads formats 1 to 3" in refusal(later, "later.h5")
     assert "not a Tanktread trajectory" in refusal(foreign, "foreign.h5")
