@@ -42,9 +42,7 @@ Settings scene_with(const Options& options, const VariationRow& what, double val
   changes.push_back(change);
   if (!more.empty()) changes.push_back(more);
   try {
-    Settings settings = read_scene(options.inputs.front(), changes);
-    if (options.jobs > 0) settings.scene.numerics.threads = options.jobs;
-    return settings;
+    return read_scene(options.inputs.front(), changes);
   } catch (const std::runtime_error& error) {
     std::string text = error.what();
     const std::string from = fmt::format("--set {}", change);

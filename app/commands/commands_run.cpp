@@ -23,12 +23,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The scene as the command line changes it.
-Settings requested_scene(const Options& options) {
-  Settings settings = read_scene(options.inputs.front(), options.set);
-  if (options.jobs > 0) settings.scene.numerics.threads = options.jobs;
-  return settings;
-}
+/// The scene as the command line changes it. The number of threads is none of its: results do not depend on it.
+Settings requested_scene(const Options& options) { return read_scene(options.inputs.front(), options.set); }
 
 void say(const Options& options, const std::string& line) {
   if (!options.quiet) fmt::print("{}\n", printable(line));

@@ -43,7 +43,8 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   };
   observer.on_ready = ready;
   observer.should_stop = [] { return interrupted(); };
-  if (scene.numerics.threads > 0) omp_set_num_threads(scene.numerics.threads);
+  if (const int threads = options.jobs > 0 ? options.jobs : scene.numerics.threads; threads > 0)
+    omp_set_num_threads(threads);
   const sim::SimulationOutcome outcome = sim::simulate(scene, how, observer);
 
   SimulationReport report;

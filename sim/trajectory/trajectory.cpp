@@ -160,6 +160,13 @@ struct OpenFile {
     const std::uint64_t head[3] = {slot.sequence, slot.payload.size(), slot_checksum(slot)};
     descriptor.write(map.at("resume_head").offset + 24 * s, head, sizeof head);
   }
+  /// Zeros behind a payload: earlier ones may have been longer, and when they were written is a matter of the clock.
+  void clear_behind(const Slot& slot) const {
+    const file::Place& place = map.at("resume");
+    const std::vector<double> zeros(place.row_bytes / 8 - slot.payload.size(), 0.0);
+    descriptor.write(place.offset + (slot.sequence % 2) * place.row_bytes + 8 * slot.payload.size(), zeros.data(),
+                     8 * zeros.size());
+  }
 
   std::vector<std::string> notes() const {
     const std::uint64_t count = std::min(word("notes_count"), file::note_rows);
@@ -290,6 +297,7 @@ struct TrajectoryWriter::Impl {
     for (const std::uint64_t number : {first + (newest + 1) % 2, first + newest % 2}) {
       sequence = number - 1;
       write_resume(payload);
+      file.clear_behind({number, {payload.begin(), payload.end()}});
     }
     sequence = first + 1;
   }

@@ -184,6 +184,24 @@ TEST_CASE("a trajectory makes room for higher orders and keeps what is in it", "
   CHECK_THAT(message_of([&] { reader.state(1); }), Catch::Contains("damaged"));
 }
 
+TEST_CASE("the bytes of a finished file do not tell how often and how long resume records were before",
+          "[trajectory]") {
+  const TemporaryFolder folder;
+  const std::vector<double> last{9, 8, 7};
+  const auto finished = [&](const char* name, const std::vector<std::vector<double>>& before) {
+    TrajectoryLayout room = layout(2);
+    room.resume = 50;
+    TrajectoryWriter writer = TrajectoryWriter::create(folder / name, room, header, state(0), payload(0));
+    for (const std::vector<double>& record : before) writer.write_resume(record);
+    writer.finish_resume(last, 0);
+    CHECK(writer.resume_payload() == last);
+    return support::read_file(folder / name);
+  };
+  const std::string bytes = finished("a.h5", {});
+  CHECK(finished("b.h5", {std::vector<double>(50, 1.5)}) == bytes);
+  CHECK(finished("c.h5", {std::vector<double>(20, 1.5), std::vector<double>(40, 2.5), {1}}) == bytes);
+}
+
 TEST_CASE("a reader follows a trajectory that is being written", "[trajectory]") {
   const TemporaryFolder folder;
   TrajectoryWriter writer = written(folder / "t.h5", 2, 3);
