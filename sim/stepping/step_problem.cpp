@@ -48,10 +48,7 @@ double gap_floor(const Model& s, const Dynamics& d) {
 Suspension freeze(const Model& s, const Dynamics& d, std::span<const Coefficients> frozen,
                   std::span<const Motion> likely) {
   const NumericsParameters& n = s.scene.numerics;
-  SuspensionOptions options{n.source_order,
-                            {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
-                            n.repulsion_strength,
-                            n.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes(d)))};
+  const SuspensionOptions options = suspension_options(n, smallest_radius(sizes(d)));
   std::vector<Coefficients> expected;
   if (n.implicit_tension)
     for (const Motion& m : likely) expected.push_back(m.tension);

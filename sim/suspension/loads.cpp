@@ -30,10 +30,7 @@ Bodies bodies_of(Plans& plans, const Scene& scene, const State& state) {
     b.upsamplings.push_back(n.upsampling > 0 ? n.upsampling : upsampling_rate(plans, x, n.aliasing_tolerance));
   }
   b.pinned = pinned_tensions(plans, scene.flows, scene.buoyancy.gravity, b.materials, b.positions, sizes);
-  b.options = {n.source_order,
-               {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
-               n.repulsion_strength,
-               n.repulsion_range.value_or(default_repulsion_range * smallest_radius(sizes))};
+  b.options = suspension_options(n, smallest_radius(sizes));
   return b;
 }
 

@@ -60,6 +60,13 @@ double smallest_radius(std::span<const AreaVolume> sizes) {
   return least;
 }
 
+SuspensionOptions suspension_options(const NumericsParameters& n, double smallest_radius) {
+  return {n.source_order,
+          {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
+          n.repulsion_strength,
+          n.repulsion_range.value_or(default_repulsion_range * smallest_radius)};
+}
+
 Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, std::span<const Coefficients> positions,
                              std::span<const int> upsamplings, const SuspensionOptions& options,
                              std::span<const Coefficients> expected_tensions,
