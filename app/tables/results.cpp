@@ -1,6 +1,7 @@
 #include "app/tables/results.h"
 
 #include "sim/layers/near.h"
+#include "sim/measures/motion.h"
 #include "sim/sphere/basis.h"
 
 #include <algorithm>
@@ -13,20 +14,6 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// The polynomial through the (at most) four points round the interval after point k, so that what is read off between
-/// saved states errs by their distance to the fourth power.
-double between(const History& h, std::size_t k, double time) {
-  const std::size_t first = k > 0 ? k - 1 : 0, end = std::min(k + 3, h.times.size());
-  double sum = 0;
-  for (std::size_t i = first; i < end; ++i) {
-    double weight = 1;
-    for (std::size_t j = first; j < end; ++j)
-      if (j != i) weight *= (time - h.times[j]) / (h.times[i] - h.times[j]);
-    sum += weight * h.values[i];
-  }
-  return sum;
-}
-
 /// Times at which the value passes first + 180, 360, ... to one side or the other: each once, in order.
 std::vector<double> half_turns(const History& h) {
   std::vector<double> times;
@@ -38,7 +25,7 @@ std::vector<double> half_turns(const History& h) {
     const bool falls = h.values[k + 1] < h.values[k];
     for (int i = 0; i < 60; ++i) {  // to rounding
       const double middle = (low + high) / 2;
-      ((between(h, k, middle) > target) == falls ? low : high) = middle;
+      ((sim::cubic_at(h.times, h.values, middle) > target) == falls ? low : high) = middle;
     }
     times.push_back((low + high) / 2);
   }
