@@ -16,6 +16,17 @@ std::vector<double> times_of(std::span<const Level> levels) {
   return times;
 }
 
+/// Times of the present and of the past, relative to one so much after the present.
+std::vector<double> times_of(const History& history, double later) {
+  double time = 0;
+  std::vector<double> times{-later};
+  for (const PastLevel& past : history.levels) {
+    time -= past.dt;
+    times.push_back(time - later);
+  }
+  return times;
+}
+
 /// What is extrapolated for one vesicle.
 struct Outlook {
   Coefficients behind;  ///< h
@@ -101,7 +112,7 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
   const int order = std::min<int>(wanted_order, int(d.vesicles.front().history.levels.size()) + 1);
 
   const int n = int(d.vesicles.size());
-  const double c = bdf(times_of(carried_levels(d.vesicles.front(), moving.front(), 0, problem.dt)), order).c;
+  const double c = bdf(times_of(d.vesicles.front().history, problem.dt), order).c;
 
   std::vector<Outlook> expected(n);
   std::vector<Coefficients> at(n), behind(n);
