@@ -22,7 +22,7 @@ struct VesicleMotion : sim::MotionPeriod {
 /// The columns of a table of motions behind `vesicle` and `motion`, declared once: v(name, meaning, value).
 template <class V>
 void visit(const VesicleMotion& m, V&& v) {
-  v("period", "of swinging, or of a full turn of the shape", m.period);
+  v("period", "of swinging, or of a full turn of the axis", m.period);
   v("from", "begin of the time over which means are taken: the last period of the shape, or the last third", m.from);
   v("to", "end of that time", m.to);
   v("angle_mean", "mean inclination, degrees; nan for tumbling", m.mean);

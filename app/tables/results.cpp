@@ -57,14 +57,7 @@ double least(const History& h) {
 double last(const History& h) { return h.values.empty() ? none : h.values.back(); }
 
 double mean_from(const History& h, double from) {
-  double sum = 0, span = 0;
-  for (std::size_t k = 0; k + 1 < h.values.size(); ++k) {
-    if (h.times[k] < from) continue;
-    const double dt = h.times[k + 1] - h.times[k];
-    sum += dt * (h.values[k] + h.values[k + 1]) / 2;
-    span += dt;
-  }
-  return span > 0 ? sum / span : none;
+  return h.times.size() > 1 ? sim::mean_over(h.times, h.values, from, h.times.back()) : none;
 }
 
 double mean(const History& h) { return h.times.empty() ? none : mean_from(h, h.times.front()); }
@@ -74,15 +67,7 @@ double half_turn(const History& h) {
   return turns.empty() ? none : turns.front();
 }
 
-/// From one half turn to the next, which is a whole period of the shape; without two, from one swing to the next.
-double period(const History& h) {
-  if (const std::vector<double> turns = half_turns(h); turns.size() > 1) return turns.back() - turns[turns.size() - 2];
-  if (!std::isnan(half_turn(h))) return none;
-  std::vector<double> tops;
-  for (std::size_t k = 1; k + 1 < h.values.size(); ++k)
-    if (h.values[k] > h.values[k - 1] && h.values[k] >= h.values[k + 1]) tops.push_back(vertex(h, k).first);
-  return tops.size() > 1 ? tops.back() - tops[tops.size() - 2] : none;
-}
+double period(const History& h) { return sim::motion_period(h.times, h.values).period; }
 
 double steady_angle(const History& h) {
   if (h.times.empty() || !half_turns(h).empty()) return none;
@@ -130,7 +115,7 @@ const std::vector<ResultRow>& results() {
   static const std::vector<ResultRow> rows{
       {"half-turn", "time at which the long axis has turned by 180 degrees from where it began",
        OfQuantity{"inclination", half_turn, true}},
-      {"period", "time from one half turn to the next, or from one swing to the next: the last of the run",
+      {"period", "of tumbling a full turn of the axis, of swinging one swing: the last of the run",
        OfQuantity{"inclination", period, true}},
       {"steady-angle", "mean inclination over the last third of a run without a half turn",
        OfQuantity{"inclination", steady_angle}},

@@ -1,6 +1,7 @@
 #include "sim/stepping/resolution.h"
 
 #include "sim/measures/diagnostics.h"
+#include "sim/suspension/gap.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,6 +50,12 @@ std::vector<Coefficients> velocities_of_less(const Model& s, const Dynamics& bef
   return velocities;
 }
 
+/// Error of position, in area radii, that a degree leaves where the nearest neighbour is `gap` area radii away.
+double film_error(int degree, double gap) {
+  constexpr double decay = 2.1;  // measured between gaps of 0.05 and 0.2
+  return std::exp(-decay * degree * std::sqrt(gap));
+}
+
 bool any_follows(const Scene& scene) {
   return std::any_of(scene.vesicles.begin(), scene.vesicles.end(),
                      [&](const VesicleParameters& v) { return order_follows(scene.time, v); });
@@ -71,17 +78,26 @@ std::vector<SpaceError> space_errors(const Model& s, const Dynamics& before, con
   const double dt = after.time - before.time;
   const auto less = velocities_of_less(s, before, dt, apart), least = velocities_of_less(s, before, dt, 2 * apart);
   if (less.empty() || least.empty()) return {};
+  double largest = 0;
+  for (const VesicleDynamics& v : after.vesicles) largest = std::max(largest, area_radius({v.area, v.volume}));
+  constexpr double far = 1;  // from there on no film asks for more than the least of degrees
+  const std::vector<double> gaps = gaps_to_neighbours(s.plans, positions(after), far * largest);
+  // As a rate it is large where it is large beside the tolerance, however slow the motion.
+  const double motion = 2 * allowed_error(s, before, dt) / (dt * tolerance_of(s.scene.time));
   std::vector<SpaceError> errors;
   for (std::size_t k = 0; k < less.size(); ++k) {
     const VesicleDynamics& v = after.vesicles[k];
+    const double radius = area_radius({v.area, v.volume});
     const auto error = [&](const Coefficients& u) {
       constexpr double stays = 0.15;  // measured: 0.02 to 0.2
-      return stays * normal_size(s.plans, v, v.motion.velocity.values - u.values) / area_radius({v.area, v.volume});
+      return stays * normal_size(s.plans, v, v.motion.velocity.values - u.values) / radius;
     };
     const double lower = error(less[k]), lowest = error(least[k]);
     constexpr double usual = 0.5;  // where there are too few degrees to tell
     const double decay = v.position.order - 2 * apart < least_degree || !(lowest > 0) ? usual : lower / lowest;
-    errors.push_back({lower * std::min(decay, 1.0), lower});
+    const auto of_film = [&](int degree) { return motion * film_error(degree, gaps[k] / radius); };
+    errors.push_back({std::max(lower * std::min(decay, 1.0), of_film(v.position.order)),
+                      std::max(lower, of_film(v.position.order - apart))});
   }
   return errors;
 }
@@ -98,11 +114,14 @@ std::vector<SpaceError> estimate_resolution(const Model& s, const Dynamics& befo
   return errors;
 }
 
+double allowed_space_error(const Model& s, const Dynamics& before, double dt) {
+  // Where nothing moves, what adds up to a share of the tolerance by the end may be left.
+  return std::max(allowed_error(s, before, dt) / dt, 0.3 * tolerance_of(s.scene.time) / s.scene.time.end);
+}
+
 std::vector<int> orders_for(const Model& s, const Dynamics& before, double dt, std::span<const SpaceError> errors) {
   const NumericsParameters& n = s.scene.numerics;
-  // Where nothing moves, what adds up to a share of the tolerance by the end may be left.
-  const double allowed =
-      std::max(allowed_error(s, before, dt) / dt, 0.3 * tolerance_of(s.scene.time) / s.scene.time.end);
+  const double allowed = allowed_space_error(s, before, dt);
   std::vector<int> orders;
   for (std::size_t k = 0; k < before.vesicles.size(); ++k) {
     const int order = before.vesicles[k].position.order;

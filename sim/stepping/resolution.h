@@ -7,6 +7,11 @@
 // as they like. Most of a wrong deformation relaxes again: a share s = 0.15 stays (docs/stepping.md). Errors fall
 // geometrically with the degree, so that p itself leaves e_p = e_{p-2}^2 / e_{p-4}. Both compare with the error that a
 // step may have (control.h): an automatic order rises where e_p is above it, and falls where e_{p-2} is far below.
+//
+// Between membranes a distance h apart the pressure of the film varies over lengths of sqrt(h R0). What it is wrong by
+// does not relax: a degree leaves
+//   exp(-2.1 p sqrt(h / R0)) R0   of position (measured, docs/stepping.md),
+// which is compared with half the tolerance.
 #pragma once
 
 #include "sim/stepping/control.h"
@@ -26,6 +31,8 @@ bool resolution_due(const Dynamics&);
 /// Puts the estimates for an accepted step into its dynamics and its record.
 std::vector<SpaceError> estimate_resolution(const Model&, const Dynamics& before, Step&);
 
+/// Error a time, in area radii, that the degrees of a vesicle may leave during a step over dt from `before`.
+double allowed_space_error(const Model&, const Dynamics& before, double dt);
 /// The orders of all vesicles for what follows a step over dt from `before`: those with an automatic order follow their
 /// errors.
 std::vector<int> orders_for(const Model&, const Dynamics& before, double dt, std::span<const SpaceError>);

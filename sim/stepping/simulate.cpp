@@ -301,6 +301,7 @@ class Run {
   /// After an estimate of what degrees are worth.
   std::optional<Rejection> adapt_orders(const Dynamics& before, double dt, std::span<const SpaceError> errors) {
     if (errors.empty()) return std::nullopt;
+    warn_of_limits(before, dt, errors);
     const std::vector<int> orders = orders_for(model_, before, dt, errors);
     Attempt<Dynamics> changed = in_orders(model_, d_, orders);
     if (!changed) return changed.rejection();
@@ -320,6 +321,16 @@ class Run {
       if (VesicleDynamics& v = d_.vesicles[k]; !v.warned && unresolved(model_, d_, k)) {
         v.warned = true;
         warn(fmt::format("t = {:.6g}: {}", d_.time, resolution_warning(model_, d_, k)));
+      }
+  }
+
+  /// Once a vesicle and run, too.
+  void warn_of_limits(const Dynamics& before, double dt, std::span<const SpaceError> errors) {
+    const double allowed = allowed_space_error(model_, before, dt);
+    for (std::size_t k = 0; k < errors.size(); ++k)
+      if (const double times = errors[k].here / allowed; !d_.vesicles[k].warned && limited(model_, d_, k, times)) {
+        d_.vesicles[k].warned = true;
+        warn(fmt::format("t = {:.6g}: {}", d_.time, limit_warning(model_, d_, k, times)));
       }
   }
 

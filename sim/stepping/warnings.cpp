@@ -6,21 +6,43 @@
 
 namespace sim {
 
+namespace {
+
+/// Whether the order of vesicle k stays what it is, however large the errors.
+bool cannot_rise(const Model& s, const Dynamics& d, std::size_t k) {
+  return !order_follows(s.scene.time, s.scene.vesicles[k]) ||
+         d.vesicles[k].position.order >= s.scene.numerics.most_order;
+}
+
+/// What sets the order of vesicle k.
+std::string_view order_key(const Model& s, std::size_t k) {
+  return order_follows(s.scene.time, s.scene.vesicles[k]) ? "numerics.most_order" : "order";
+}
+
+}  // namespace
+
 bool unresolved(const Model& s, const Dynamics& d, std::size_t k) {
-  const VesicleDynamics& v = d.vesicles[k];
-  const NumericsParameters& n = s.scene.numerics;
-  const bool rises = order_follows(s.scene.time, s.scene.vesicles[k]) && v.position.order < n.most_order;
-  return v.tail > n.tail_warning && !rises;
+  return d.vesicles[k].tail > s.scene.numerics.tail_warning && cannot_rise(s, d, k);
 }
 
 std::string resolution_warning(const Model& s, const Dynamics& d, std::size_t k) {
   const VesicleDynamics& v = d.vesicles[k];
-  const bool follows = order_follows(s.scene.time, s.scene.vesicles[k]);
   const auto [tail, bound] = told_apart(100 * v.tail, 100 * s.scene.numerics.tail_warning);
   return fmt::format(
       "vesicle {}: order {} does not resolve the shape well ({} % of the mean curvature's spectrum lies in its last "
       "quarter; bound {} %); try {} {}",
-      k, v.position.order, tail, bound, follows ? "numerics.most_order" : "order", v.position.order * 3 / 2);
+      k, v.position.order, tail, bound, order_key(s, k), v.position.order * 3 / 2);
+}
+
+bool limited(const Model& s, const Dynamics& d, std::size_t k, double times_allowed) {
+  constexpr double tolerable = 2;  // estimates are no better
+  return times_allowed > tolerable && cannot_rise(s, d, k);
+}
+
+std::string limit_warning(const Model& s, const Dynamics& d, std::size_t k, double times_allowed) {
+  const int order = d.vesicles[k].position.order;
+  return fmt::format("vesicle {}: order {} leaves errors {:.2g} times as large as the tolerance allows; try {} {}", k,
+                     order, times_allowed, order_key(s, k), order * 3 / 2);
 }
 
 namespace {

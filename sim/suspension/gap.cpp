@@ -142,38 +142,63 @@ Gap gap_between(const Surface& a, const Surface& b, int first, int second) {
   return gap;
 }
 
+/// The surfaces of a suspension with all that a search for gaps asks of them.
+struct Search {
+  std::vector<std::optional<Surface>> surfaces;
+  std::vector<Box> boxes;
+  double spacing = 0;  ///< largest of the source grids
+  double extent = 0;   ///< diagonal of what holds them all
+};
+
+Search search_among(Plans& plans, std::span<const Coefficients> positions) {
+  const int n = int(positions.size());
+  Search search;
+  search.surfaces.resize(n);
+  parallel_for(n, [&](int i) {
+    const Basis& basis = plans.basis(positions[i].order, smooth_order(positions[i].order));
+    search.surfaces[i].emplace(Surface{positions[i], basis, make_sources(basis, positions[i])});
+  });
+  Box all{search.surfaces[0]->sources.box};
+  for (const auto& surface : search.surfaces) {
+    search.boxes.push_back(surface->sources.box);
+    all = united(all, search.boxes.back());
+    search.spacing = std::max(search.spacing, surface->sources.spacing.maxCoeff());
+  }
+  search.extent = (all.high - all.low).norm();
+  return search;
+}
+
+/// Of all pairs whose boxes are no farther apart than `reach`.
+std::vector<Gap> gaps_of_pairs(const Search& search, double reach) {
+  const auto pairs = near_pairs(search.boxes, reach);
+  std::vector<Gap> gaps(pairs.size());
+  parallel_for(int(pairs.size()), [&](int k) {
+    const auto [i, j] = pairs[k];
+    gaps[k] = gap_between(*search.surfaces[j], *search.surfaces[i], i, j);
+  });
+  return gaps;
+}
+
 }  // namespace
 
 Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
-  const int n = int(positions.size());
   Gap best{std::numeric_limits<double>::infinity(), -1, -1, false};
-  if (n < 2) return best;
-  std::vector<std::optional<Surface>> surfaces(n);
-  parallel_for(n, [&](int i) {
-    const Basis& basis = plans.basis(positions[i].order, smooth_order(positions[i].order));
-    surfaces[i].emplace(Surface{positions[i], basis, make_sources(basis, positions[i])});
-  });
-  std::vector<Box> boxes;
-  Box all{surfaces[0]->sources.box};
-  double reach = 0;
-  for (const auto& surface : surfaces) {
-    boxes.push_back(surface->sources.box);
-    all = united(all, boxes.back());
-    reach = std::max(reach, surface->sources.spacing.maxCoeff());
-  }
+  if (positions.size() < 2) return best;
+  const Search search = search_among(plans, positions);
   // Pairs whose boxes are farther apart than the least gap found so far cannot have a smaller one.
-  const double farthest = (all.high - all.low).norm();
-  for (;; reach *= 4) {
-    const auto pairs = near_pairs(boxes, reach);
-    std::vector<Gap> gaps(pairs.size());
-    parallel_for(int(pairs.size()), [&](int k) {
-      const auto [i, j] = pairs[k];
-      gaps[k] = gap_between(*surfaces[j], *surfaces[i], i, j);
-    });
-    for (const Gap& gap : gaps)
+  for (double reach = search.spacing;; reach *= 4) {
+    for (const Gap& gap : gaps_of_pairs(search, reach))
       if (gap.distance < best.distance) best = gap;
-    if (best.distance <= reach || reach > farthest) return best;
+    if (best.distance <= reach || reach > search.extent) return best;
   }
+}
+
+std::vector<double> gaps_to_neighbours(Plans& plans, std::span<const Coefficients> positions, double reach) {
+  std::vector<double> least(positions.size(), std::numeric_limits<double>::infinity());
+  if (positions.size() < 2) return least;
+  for (const Gap& gap : gaps_of_pairs(search_among(plans, positions), reach))
+    for (const int k : {gap.first, gap.second}) least[k] = std::min(least[k], gap.distance);
+  return least;
 }
 
 }  // namespace sim

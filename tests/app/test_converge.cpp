@@ -167,7 +167,7 @@ TEST_CASE("results of a history are those of the function that it samples") {
   });
   // Four points 0.05 apart interpolate to some 1e-6; h^4 of the rate of change.
   CHECK(result("half-turn", tumbling) == Approx(2.5 * pi).margin(1e-5));
-  CHECK(result("period", tumbling) == Approx(2.5 * pi).margin(2e-5));
+  CHECK(result("period", tumbling) == Approx(5 * pi).margin(4e-5));
   CHECK(std::isnan(result("steady-angle", tumbling)));
   const app::History swinging = history(20, 400, [](double t) { return 5 + 20 * std::sin(1.3 * t); });
   CHECK(std::isnan(result("half-turn", swinging)));
@@ -251,7 +251,7 @@ TEST_CASE("converge runs a scene three times, tells orders and limits, and keeps
   const Outcome first = desk(words);
   INFO(first.err << first.out);
   REQUIRE(first.status == 0);
-  CHECK(first.err.empty());
+  CHECK_THAT(first.err, Contains("tolerance 0.0001: ") && Contains("order 4 leaves errors"));  // and nothing worse
   CHECK_THAT(first.out, Contains("0.001 *") && Contains("inclination") && Contains("stated"));
   for (const char* name : {"tolerance-0.01.h5", "tolerance-0.001.h5", "tolerance-0.0001.h5", "tolerance.csv",
                            "tolerance.png", "tolerance.svg", "tolerance.pdf", "tolerance.md"})

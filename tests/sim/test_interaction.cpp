@@ -287,6 +287,22 @@ TEST_CASE("gaps are measured between the surfaces, not between grid points") {
   }
 }
 
+TEST_CASE("the gap from each vesicle to its neighbours is that to the nearest") {
+  Plans plans;
+  std::vector<Coefficients> row;
+  for (const double at : {0.0, 2.1, 4.15, 9.0}) {  // spheres of radius 1
+    VesicleParameters v = test::vesicle("sphere", 1, 6);
+    v.center = {at, 0, 0};
+    row.push_back(initial_position(v));
+  }
+  const std::vector<double> gaps = gaps_to_neighbours(plans, row, 0.5);
+  CHECK(gaps[0] == Approx(0.1).epsilon(1e-5));
+  CHECK(gaps[1] == Approx(0.05).epsilon(1e-5));
+  CHECK(gaps[2] == Approx(0.05).epsilon(1e-5));
+  CHECK(gaps[3] > 0.5);
+  CHECK(smallest_gap(plans, row).distance == Approx(0.05).epsilon(1e-5));
+}
+
 TEST_CASE("surfaces that touch or cross slightly are said to cross") {
   Plans plans;
   for (const double overlap : {1e-12, 1e-3, 0.02, 0.2}) {

@@ -187,3 +187,29 @@ TEST_CASE("bounds of automatic orders are kept, and with fixed steps the order i
   scene.time.step = 0.05;
   CHECK(TrajectoryReader(Run(scene).path).state(1).vesicles[0].position.order == 8);
 }
+
+TEST_CASE("vesicles a film apart begin with the degrees that resolve it, or with a warning that they lack them") {
+  Scene scene = followed(1e-2, 10, 1);
+  scene.vesicles.push_back(scene.vesicles[0]);
+  const double thickness = 2 * spheroid_axes(0.85, true).y();
+  const auto order_at = [&](double gap) {
+    scene.vesicles[1].center = {0, thickness + gap, 0};
+    Plans plans;
+    return resolved_start(make_model(scene, plans)).vesicles[1].position.order;
+  };
+  CHECK(order_at(1) == 6);
+  // The least p of exp(-2.1 p sqrt(0.05)) < 0.01/2 is 11.3; a rise goes to half of that, 12.8.
+  CHECK(order_at(0.05) == 14);
+  scene.numerics.most_order = 8;
+  scene.vesicles[1].center.y() = thickness + 0.05;
+  SimulationOptions options;
+  support::TemporaryFolder folder;
+  options.trajectory = folder.path() / "t.h5";
+  options.scene_text = "a scene";
+  options.steps = 1;
+  std::string warnings;
+  SimulationObserver observer;
+  observer.on_warning = [&](const std::string& warning) { warnings += warning; };
+  simulate(scene, options, observer);
+  CHECK_THAT(warnings, Catch::Contains("order 8 leaves errors") && Catch::Contains("try numerics.most_order 12"));
+}
