@@ -12,6 +12,7 @@ namespace sim {
 /// One sentence without a full stop.
 struct Rejection {
   std::string reason;
+  bool final = false;  ///< a smaller attempt would come to the same
 };
 
 template <class T>

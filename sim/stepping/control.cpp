@@ -78,6 +78,10 @@ void plan_next(const Model& s, const Dynamics& before, Step& step) {
   d.dt_limit = std::min(dt * factor, longest_adaptive_step(s, d));
   // A step that was cut to meet a time says little of what the next may be.
   if (dt < before.dt_limit && factor >= 1) d.dt_limit = std::max(d.dt_limit, std::min(before.dt_limit, 2 * dt));
+  if (const double closed = before.control.gap - control.gap; closed > 0) {
+    constexpr double most = 0.5;  // of the gap, in one step
+    d.dt_limit = std::min(d.dt_limit, most * control.gap / closed * dt);
+  }
 }
 
 }  // namespace sim

@@ -4,8 +4,8 @@
 // leave
 //   1/2 tolerance (w dt + a),   w the rate of motion, largest of all vesicles, a = 0.01,
 // where the half makes up for the growth of errors later on, and a keeps steps from becoming short for nothing while
-// all motion dies out. The length follows the estimate of the order in use, the order follows the three estimates of
-// its neighbours.
+// all motion dies out, and a gap that closes does so by no more than half a step. The length follows the estimate of
+// the order in use, the order follows the three estimates of its neighbours.
 #pragma once
 
 #include "sim/stepping/stepper.h"

@@ -18,7 +18,7 @@ constexpr double largest_number = 1e150;  // the square of every number is one, 
 template <class Archive, class D>
 void transfer(Archive& ar, D& d) {
   ar(d.step), ar(d.saves), ar(d.time), ar(d.dt_limit), ar(d.calm);
-  ar(d.control.order), ar(d.control.at_order), ar(d.control.held), ar(d.control.resolution_due);
+  ar(d.control.order), ar(d.control.at_order), ar(d.control.held), ar(d.control.resolution_due), ar(d.control.gap);
   ar.size(d.vesicles);
   for (auto& v : d.vesicles) visit(v, [&](Part, auto& member) { ar(member); });
 }

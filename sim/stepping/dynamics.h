@@ -87,6 +87,7 @@ struct Control {
   std::int64_t at_order = 0;        ///< accepted steps of that order
   bool held = false;                ///< the last attempt failed: the step does not grow
   std::int64_t resolution_due = 0;  ///< step of the next estimate of what the degrees of the vesicles leave
+  double gap = 0;                   ///< smallest between two membranes after the last step; 0: not known
 };
 
 struct Dynamics {
@@ -100,7 +101,7 @@ struct Dynamics {
 };
 
 /// Form of the resume record; a record of another version is refused.
-inline constexpr int resume_version = 4;
+inline constexpr int resume_version = 5;
 /// More levels than any scheme looks back.
 inline constexpr int most_past_levels = 8;
 

@@ -59,6 +59,8 @@ Attempt<Step> fixed_step_with_retries(const Model& s, Dynamics& d, double target
       if (++after.calm >= calm_enough) after.dt_limit = std::min(2 * d.dt_limit, longest);
       after.control.held = false;
       return step;
+    } else if (step.rejection().final) {
+      return step.rejection();
     } else {
       const int most = dt / 2 < shortest * (1 - same_time) ? retries : retries + 1;
       if (auto end = failed(d, step.rejection().reason, dt, retries, most, observer)) return *end;
@@ -74,6 +76,7 @@ Attempt<Step> adaptive_step(const Model& s, Dynamics& d, double target, const Si
     const double dt = length_towards(d.time, target, d.dt_limit);
     Attempt<Step> step = take_step(s, d, dt);
     if (!step) {
+      if (step.rejection().final) return step.rejection();
       if (auto end = failed(d, step.rejection().reason, dt, failures++, s.scene.numerics.step_retries, observer))
         return *end;
     } else if (const std::optional<double> share = shortening(s, d, *step)) {

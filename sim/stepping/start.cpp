@@ -170,13 +170,14 @@ Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
     start_anew(s, 0, 0, v);
     d.vesicles.push_back(std::move(v));
   }
-  if (const Gap gap = smallest_gap(s.plans, positions(d)); gap.crossing)
-    throw std::invalid_argument(fmt::format("vesicles {} and {} overlap", gap.first, gap.second));
-  else if (gap.distance < gap_floor(s, d))
+  const Gap gap = smallest_gap(s.plans, positions(d));
+  if (gap.crossing) throw std::invalid_argument(fmt::format("vesicles {} and {} overlap", gap.first, gap.second));
+  if (gap.distance < gap_floor(s, d))
     throw std::invalid_argument(
         fmt::format("vesicles {} and {} are {:.3g} apart, less than numerics.gap_floor = {:.3g}", gap.first, gap.second,
                     gap.distance, gap_floor(s, d)));
   start_steps(s, d);
+  if (std::isfinite(gap.distance)) d.control.gap = gap.distance;
   if (scheme_name(s.scene) == "explicit")
     for (std::size_t k = 0; k < d.vesicles.size(); ++k)
       if (is_sphere({d.vesicles[k].area, d.vesicles[k].volume}))

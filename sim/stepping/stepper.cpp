@@ -173,6 +173,22 @@ std::optional<Rejection> finish_vesicles(const Model& s, Step& step, Advance& ad
   return std::nullopt;
 }
 
+/// Of a step that leads two vesicles into each other. Where they were all but there before, shorter steps only take
+/// longer: the film between them is thinner than their degrees resolve.
+Rejection too_close(const Model& s, const Dynamics& before, const Gap& gap) {
+  const std::string pair = fmt::format("vesicles {} and {}", gap.first, gap.second);
+  const double floor = gap_floor(s, before), last = before.control.gap;
+  constexpr double all_but_there = 1.5;
+  if (last > 0 && last < all_but_there * floor)
+    return {
+        fmt::format("{} come within numerics.gap_floor = {:.3g}, nearer than order {} keeps membranes apart; try more "
+                    "degrees, or numerics.repulsion_strength",
+                    pair, floor, before.vesicles[gap.first].position.order),
+        true};
+  if (gap.crossing) return {pair + " would cross"};
+  return {fmt::format("{} would come within {:.2g}", pair, gap.distance)};
+}
+
 }  // namespace
 
 Attempt<Step> take_step(const Model& s, const Dynamics& before, double dt) {
@@ -189,9 +205,8 @@ Attempt<Step> take_step(const Model& s, const Dynamics& before, double dt) {
   d.step = before.step + 1;
   if (auto rejection = finish_vesicles(s, step, *advance, dt)) return *rejection;
   const Gap gap = smallest_gap(s.plans, positions(d));
-  if (gap.crossing || gap.distance < gap_floor(s, d))
-    return Rejection{fmt::format("vesicles {} and {} {}", gap.first, gap.second,
-                                 gap.crossing ? "would cross" : fmt::format("would come within {:.2g}", gap.distance))};
+  if (gap.crossing || gap.distance < gap_floor(s, d)) return too_close(s, before, gap);
+  if (std::isfinite(gap.distance)) d.control.gap = gap.distance;
   record.step = double(d.step);
   record.dt = dt;
   record.time = d.time;

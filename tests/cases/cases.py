@@ -656,7 +656,7 @@ def forged_record(desk):
         heads, whole = file["resume_head"][:], file["resume"][:]
     for s in range(2):
         assert checksum(int(heads[s, 0]), whole[s, :int(heads[s, 1])].tobytes()) == int(heads[s, 2]), "the format has changed"
-    order = 11  # after version, step, saves, time, step limit, calm, four of the control, vesicles: order, rows, columns of the position, its numbers
+    order = 12  # after version, step, saves, time, step limit, calm, five of the control, vesicles: order, rows, columns of the position, its numbers
     rows, columns = int(whole[0, order + 1]), int(whole[0, order + 2])
     past = order + 3 + rows * columns + 1  # behind the number of past levels
     assert whole[0, order] == whole[0, past] == 4, "the format has changed"

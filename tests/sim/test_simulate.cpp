@@ -141,6 +141,29 @@ TEST_CASE("a run that cannot go on stops with its reason and the last good state
   CHECK(said);
 }
 
+TEST_CASE("a gap that closes on its floor ends the run at once, with the reason and without halvings") {
+  const support::TemporaryFolder folder;
+  Scene scene = short_scene();
+  scene.flows[0].kind = "extension";  // presses together along z
+  scene.time.step.reset();
+  scene.time.scheme.reset();
+  scene.vesicles = {test::vesicle("prolate", 0.95, 6, 10), test::vesicle("prolate", 0.95, 6, 10)};
+  const double thickness = 2 * spheroid_axes(0.95, true).y();
+  for (VesicleParameters& v : scene.vesicles) v.axis = Vec3::UnitX();
+  scene.vesicles[1].center = {0, 0, thickness + 0.3};
+  scene.numerics.gap_floor = 0.25;
+  int warnings = 0;
+  SimulationObserver observer;
+  observer.on_warning = [&](const std::string& w) { warnings += w.find("trying a step") != std::string::npos; };
+  SimulationOptions options;
+  options.trajectory = folder.path() / "g.h5";
+  options.scene_text = "a scene";
+  const auto outcome = simulate(scene, options, observer);
+  CHECK(outcome.end == SimulationEnd::failed);
+  CHECK(outcome.reason.find("come within numerics.gap_floor = 0.25") != std::string::npos);
+  CHECK(warnings == 0);
+}
+
 TEST_CASE("a failing step is retried with half its length before the run gives up") {
   const support::TemporaryFolder folder;
   Scene scene = short_scene(0.4);
