@@ -46,7 +46,7 @@ void renew(FastParts& parts, const FastSetting& s, const Vec3& sides) {
       same_split && parts.setting.window == s.window && parts.setting.oversampling == s.oversampling;
   if (!same_split) parts.split = std::make_shared<const KernelSplit>(s.wave_number, s.accuracy);
   if (!same_window) parts.window = std::make_shared<const Window>(s.window, *parts.split, s.oversampling);
-  const auto nodes = Mesh::nodes_for(sides, Mesh::spacing(*parts.split, s.oversampling), s.window);
+  const auto nodes = Mesh::nodes_for(sides, Mesh::spacing(s.wave_number, s.oversampling), s.window);
   if (!same_window || nodes != parts.nodes)
     parts.mesh = std::make_shared<const Mesh>(*parts.split, *parts.window, s.oversampling, nodes);
   parts.nodes = nodes;
@@ -56,7 +56,7 @@ void renew(FastParts& parts, const FastSetting& s, const Vec3& sides) {
 }  // namespace
 
 FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& bodies,
-                      const std::vector<FastGroup>& groups, const std::vector<Exclusion>& exclusions,
+                      const std::vector<FastGroup>& groups, const std::vector<Exclusion>& exclusions, bool dual,
                       FastParts& parts) {
   std::vector<FastBody> scaled_bodies = bodies;
   std::vector<FastGroup> scaled_groups = groups;
@@ -75,11 +75,10 @@ FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& b
   const Vec3 low = y.rowwise().minCoeff().cwiseMin(x.rowwise().minCoeff()),
              high = y.rowwise().maxCoeff().cwiseMax(x.rowwise().maxCoeff()), middle = 0.5 * (low + high);
   renew(parts, setting, high - low);
-  const bool with_slopes = true;
   return {setting,
           parts.split,
           parts.mesh,
-          parts.mesh->place(y, middle, with_slopes),
+          parts.mesh->place(y, middle, dual),
           parts.mesh->place(x, middle, false),
           plan_pairs(scaled_bodies, scaled_groups, exclusions, setting.single_precision),
           firsts(sources),

@@ -43,9 +43,9 @@ struct FastParts {
   std::array<int, 3> nodes{};
 };
 
-/// `parts`: of an earlier sum; renewed where they do not fit.
+/// `dual`: some strengths have double layers. `parts`: of an earlier sum; renewed where they do not fit.
 FastSum plan_fast_sum(const FastSetting&, const std::vector<FastBody>&, const std::vector<FastGroup>&,
-                      const std::vector<Exclusion>&, FastParts& parts);
+                      const std::vector<Exclusion>&, bool dual, FastParts& parts);
 
 /// Velocity at the targets of each group. Does not depend on the number of threads.
 std::vector<Points> fast_velocity(const FastSum&, std::span<const FastStrengths> coarse,

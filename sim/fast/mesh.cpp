@@ -47,9 +47,7 @@ void cosine_transform(RawVector<double>& values, const std::array<int, 3>& count
 
 }  // namespace
 
-double Mesh::spacing(const KernelSplit& split, double oversampling) {
-  return pi / (oversampling * split.wave_number());
-}
+double Mesh::spacing(double wave_number, double oversampling) { return pi / (oversampling * wave_number); }
 
 std::array<int, 3> Mesh::nodes_for(const Eigen::Vector3d& sides, double spacing, int width) {
   std::array<int, 3> nodes{};
@@ -65,7 +63,7 @@ Mesh::Mesh(const KernelSplit& split, const Window& window, double oversampling, 
 Mesh::~Mesh() = default;
 
 Mesh::Plan::Plan(const KernelSplit& split, const Window& w, double oversampling, const std::array<int, 3>& node_counts)
-    : window(w), step(spacing(split, oversampling)), nodes(node_counts) {
+    : window(w), step(spacing(split.wave_number(), oversampling)), nodes(node_counts) {
   for (int d = 0; d < 3; ++d) full[d] = 2 * nodes[d];
   cut = step * std::hypot(nodes[0], nodes[1], nodes[2]);
   padded_width = (w.width() + lanes - 1) / lanes * lanes;

@@ -41,7 +41,7 @@ class Mesh {
   Mesh(const Mesh&) = delete;
 
   /// Distance of neighbouring nodes.
-  static double spacing(const KernelSplit&, double oversampling);
+  static double spacing(double wave_number, double oversampling);
   /// The least good numbers of nodes for points that fill a box of these sides.
   static std::array<int, 3> nodes_for(const Eigen::Vector3d& sides, double spacing, int width);
   /// Transforms are of this many nodes.

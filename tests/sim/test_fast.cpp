@@ -1,5 +1,7 @@
 // Fast sums: kernels split into a smooth part, summed by Fourier transforms, and a rest within a cut-off.
 #include "sim/fast/fast_sum.h"
+#include "sim/suspension/interaction.h"
+#include "surfaces.h"
 #include "tests/support/catch.h"
 
 #include <omp.h>
@@ -49,7 +51,7 @@ std::vector<Points> fast(const Cloud& c, double tolerance, bool dual, double cut
   FastSetting setting = fast_setting(tolerance, dual);
   setting.cutoff = cutoff;
   FastParts parts;
-  const FastSum sum = plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, parts);
+  const FastSum sum = plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, dual, parts);
   return fast_velocity(sum, c.strengths, std::vector<FastStrengths>(c.bodies.size()));
 }
 
@@ -166,7 +168,7 @@ TEST_CASE("fine points stand for the coarse ones where a patch of targets is nea
   FastSetting setting = fast_setting(tolerance, true);
   setting.cutoff = 1.2;
   FastParts parts;
-  const FastSum sum = plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, parts);
+  const FastSum sum = plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, true, parts);
   CHECK(difference(fast_velocity(sum, c.strengths, fine), direct(c)) < tolerance);
   for (FastStrengths& s : fine) s.force *= 2;
   CHECK(difference(fast_velocity(sum, c.strengths, fine), direct(c)) > 0.01);
@@ -185,9 +187,9 @@ TEST_CASE("the bits of a fast sum do not depend on the number of threads, nor on
   omp_set_num_threads(before);
   FastParts parts;
   FastSetting setting = fast_setting(1e-6, true);
-  plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, parts);
+  plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, true, parts);
   setting = fast_setting(1e-4, true);
-  const FastSum again = plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, parts);
+  const FastSum again = plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, true, parts);
   const std::vector<Points> later = fast_velocity(again, c.strengths, std::vector<FastStrengths>(c.bodies.size()));
   for (std::size_t g = 0; g < one.size(); ++g) CHECK(later[g] == one[g]);
 }
@@ -207,4 +209,74 @@ TEST_CASE("patches hold every point once, as many as asked for, and lie within t
     }
   }
   CHECK(seen == std::vector<int>(seen.size(), 1));
+}
+
+namespace {
+
+/// Vesicles of two orders, sizes and contrasts, some close to each other.
+struct Crowd {
+  std::vector<Coefficients> positions;
+  std::vector<Densities> densities;
+  std::vector<Material> materials;
+};
+
+Crowd crowd(int side, double distance) {
+  Crowd c;
+  for (int k = 0; k < side * side * side; ++k) {
+    const int order = k % 3 == 0 ? 6 : 8;
+    VesicleParameters v = test::vesicle("prolate", 0.9, order);
+    v.axis = Vec3(1, 0.3 * (k % 5), -0.2 * (k % 7));
+    v.center = distance * Vec3(k % side, k / side % side, k / (side * side)) + 0.05 * Vec3(k % 3, k % 4, k % 5);
+    Coefficients x = initial_position(v);
+    if (k % 4 == 1) {
+      const Vec3 centre = x.values.row(0).transpose();
+      x.values *= 0.7;
+      x.values.row(0) = centre.transpose();
+    }
+    c.positions.push_back(x);
+    c.materials.push_back({k % 2 == 0 ? 5.0 : 1.0, 0.01, 0});
+    c.densities.push_back(
+        {test::smooth_field(order, 4, 3, unsigned(k)), test::smooth_field(order, 4, 3, unsigned(100 + k))});
+    if (k % 2 == 1) c.densities.back().dual.values.setZero();
+  }
+  return c;
+}
+
+Interaction interaction_by(Plans& plans, const Crowd& c, const std::string& method, double tolerance) {
+  InteractionOptions options;
+  options.far = {method, tolerance};
+  return plan_interaction(plans, c.positions, c.materials, options);
+}
+
+}  // namespace
+
+TEST_CASE("vesicles of several orders and sizes move one another by the fast sum as by the direct one, near and far") {
+  Plans plans;
+  const Crowd c = crowd(2, 2.6);
+  const Interaction direct = interaction_by(plans, c, "direct", 1e-6);
+  CHECK(std::any_of(direct.pairs.begin(), direct.pairs.end(), [](const PairPlan& p) { return !p.near.empty(); }));
+  const std::vector<Coefficients> expected = induced_velocity(direct, c.densities);
+  // The direct sum itself, with its coarse grids of order p + 1, errs by 1e-6.
+  for (const double tolerance : {1e-4, 3e-6}) {
+    const Interaction fast = interaction_by(plans, c, "fast", tolerance);
+    REQUIRE(fast.fast);
+    const std::vector<Coefficients> u = induced_velocity(fast, c.densities);
+    double square = 0, norm = 0;
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      square += (u[k].values - expected[k].values).squaredNorm();
+      norm += expected[k].values.squaredNorm();
+    }
+    INFO(tolerance);
+    CHECK(std::sqrt(square / norm) < tolerance);
+  }
+}
+
+TEST_CASE("two vesicles, and a cloud that is mostly empty, are summed directly; a crowd is not") {
+  Plans plans;
+  CHECK(interaction_by(plans, crowd(4, 2.8), "auto", 1e-4).fast);
+  CHECK(!interaction_by(plans, crowd(4, 200), "auto", 1e-4).fast);
+  Crowd pair = crowd(2, 2.8);
+  pair.positions.resize(2);
+  pair.materials.resize(2);
+  CHECK(!interaction_by(plans, pair, "auto", 1e-4).fast);
 }
