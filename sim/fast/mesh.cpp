@@ -132,18 +132,18 @@ void Mesh::Plan::make_multiplier(const KernelSplit& split) {
                   near.begin() + std::ptrdiff_t((z * my + y) * mx));
   cosine_transform(near, octant);
   multiplier.resize(near.size());
-  const double per_node = 1 / (8.0 * nodes[0] * nodes[1] * nodes[2]);
+  const double share = 1 / (8.0 * nodes[0] * nodes[1] * nodes[2]);
   parallel_for(octant[1], [&](int y) {
     for (std::size_t x = 0; x < mx; ++x)
       for (std::size_t z = 0; z < mz; ++z)
-        multiplier[(std::size_t(y) * mx + x) * mz + z] = near[(z * my + std::size_t(y)) * mx + x] * per_node;
+        multiplier[(std::size_t(y) * mx + x) * mz + z] = near[(z * my + std::size_t(y)) * mx + x] * share;
   });
 }
 
 MeshPoints Mesh::place(const Points& points, const Eigen::Vector3d& middle, bool slopes) const {
   const Plan& m = *plan_;
   const int width = m.window.width(), padded = m.padded_width;
-  const std::size_t stride = static_cast<std::size_t>(3 * padded);
+  const std::size_t stride = 3 * static_cast<std::size_t>(padded);
   MeshPoints placed;
   placed.count = points.cols();
   const auto count = static_cast<std::size_t>(placed.count);

@@ -104,7 +104,8 @@ struct Rates {
   double direct_pair, pair, node, spread, read;
 };
 Rates rates_of(const FastSetting& s, bool dual) {
-  const double squares = double(s.window) * s.window * ((s.window + 3) / 4);
+  const int vectors = (s.window + 3) / 4;
+  const double squares = double(s.window) * s.window * vectors;
   return {dual ? 1.3e-9 : 1.03e-9, (s.single_precision ? 1.0e-9 : 2.4e-9) * (dual ? 1.8 : 1), 9e-9,
           (dual ? 3.2e-9 : 1.9e-9) * squares + 0.1e-6, 1.7e-9 * squares + 0.1e-6};
 }
@@ -125,11 +126,13 @@ std::optional<FastChoice> choose_fast(std::span<const int> orders, std::span<con
   }
   const FastSetting setting = fast_setting(options.tolerance, dual);
   const Rates rates = rates_of(setting, dual);
-  const double direct = targets * targets * double(n - 1) / double(n) * rates.direct_pair;
-  // The mesh alone, where its nodes are as far apart as ever makes sense: for few vesicles, nothing else is worth
-  // counting.
-  if (options.method == "auto" && targets * (rates.spread + rates.read) > direct) return std::nullopt;
+  double direct = targets * targets * double(n - 1) / double(n) * rates.direct_pair;
+  // For few vesicles nothing but spreading and reading is worth counting.
+  if (options.method == "auto" && 2 * targets * (rates.spread + rates.read) > direct) return std::nullopt;
   const Neighbourhood near(coarse, largest / 4);
+  constexpr double everywhere = 1e300, coarse_from = 6;  // spacings: as InteractionOptions has it
+  direct += targets * near.count(everywhere, coarse_from * largest, (fine_points - targets) / double(n), 0) *
+            rates.direct_pair;
   const double node = Mesh::spacing(setting.wave_number, setting.oversampling), transforms = dual ? 7 : 6;
   FastChoice best{setting, 0, std::numeric_limits<double>::infinity()};
   for (const int finer : {0, 1, 2}) {
