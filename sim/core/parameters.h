@@ -44,6 +44,7 @@ inline constexpr std::array<std::string_view, 3> time_factor_names{"constant", "
 inline constexpr std::array<std::string_view, 4> reparametrization_names{"moving", "auto", "always", "off"};
 
 inline constexpr std::array<std::string_view, 2> preconditioner_names{"spectral", "block"};
+inline constexpr std::array<std::string_view, 3> far_field_names{"auto", "direct", "fast"};
 
 /// One term of the background flow u_inf; several terms add up.
 struct FlowParameters {
@@ -247,6 +248,7 @@ struct NumericsParameters {
   int label_order = 0;                    ///< degree of the material labels; 0: max(2p, 24)
   bool implicit_tension = true;
   std::string preconditioner = "spectral";
+  std::string far_field = "auto";
   int interaction_order = 0;  ///< degree of the smooth source grids between vesicles; 0: p^(3/2)
   bool near_rule = true;
   int near_latitudes = 32;
@@ -329,6 +331,13 @@ void visit(P& p, V&& v) {
               .meaning = "of the coupled solve: spectral, or a loose solve of each vesicle's own block",
               .choices = preconditioner_names},
     p.preconditioner);
+  v(Parameter{.name = "far_field",
+              .unit = "",
+              .meaning =
+                  "sums over all pairs of vesicles: directly, by Fourier transforms to the tolerance of the run, "
+                  "or what costs less",
+              .choices = far_field_names},
+    p.far_field);
   v(Parameter{.name = "interaction_order",
               .unit = "",
               .meaning = "order of the smooth source grids between vesicles; auto: p^(3/2)",

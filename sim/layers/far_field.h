@@ -7,6 +7,7 @@
 #pragma once
 
 #include "sim/core/cells.h"
+#include "sim/fast/patches.h"
 #include "sim/sphere/basis.h"
 
 #include <memory>
@@ -37,12 +38,6 @@ struct SourceDensities {
 struct TargetGroup {
   Matrix points;     ///< points x 3
   int surface = -1;  ///< whose grid they are; -1: of none
-};
-
-/// The targets of a group that do not see a surface by the smooth rule, in ascending order.
-struct Exclusion {
-  int group, surface;
-  std::vector<int> targets;
 };
 
 /// The targets of a group that do see a surface which not all of them see, in ascending order.

@@ -1,6 +1,7 @@
 // The store of plans a simulation uses: built when first requested, immutable afterwards, returned by reference.
 #pragma once
 
+#include "sim/fast/fast_sum.h"
 #include "sim/layers/layer_potentials.h"
 #include "sim/sphere/basis.h"
 #include "sim/sphere/rotation.h"
@@ -21,6 +22,13 @@ class Plans {
     return get(layers_, std::pair(order, source_order), order, source_order);
   }
   const RotationPlan& rotation(int order) { return get(rotations_, order, order); }
+
+  /// What fast sums share, for one caller at a time.
+  template <class Use>
+  auto with_fast_parts(Use&& use) {
+    const std::lock_guard lock(fast_mutex_);
+    return use(fast_);
+  }
 
   /// Between two steps, while nobody holds a reference: drops what has not been asked for in the last `rounds` calls,
   /// so that a run whose orders change keeps no more than it needs.
@@ -56,6 +64,8 @@ class Plans {
   Table<std::pair<int, int>, Basis> bases_;
   Table<std::pair<int, int>, LayerPotentials> layers_;
   Table<int, RotationPlan> rotations_;
+  std::mutex fast_mutex_;
+  FastParts fast_;
 };
 
 }  // namespace sim

@@ -3,19 +3,11 @@
 // needs a shuffle.
 #pragma once
 
-#include <cmath>
+#include "sim/core/lanes.h"
+
 #include <cstddef>
 
 namespace sim {
-
-constexpr int lanes = 4;
-using Lane = double __attribute__((vector_size(lanes * sizeof(double))));
-
-inline Lane lane_sqrt(Lane v) {
-  Lane r{};
-  for (int i = 0; i < lanes; ++i) r[i] = std::sqrt(v[i]);
-  return r;
-}
 
 /// Rows of B and C start at b + b_row[k] and c + c_row[m] (in vectors); A is rows x depth, row-major, leading dimension
 /// a_ld.

@@ -1,9 +1,10 @@
 #include "sim/sphere/basis.h"
 
+#include "sim/core/fftw_planner.h"
+
 #include <fftw3.h>
 
 #include <cmath>
-#include <mutex>
 #include <numbers>
 #include <stdexcept>
 
@@ -18,11 +19,6 @@ constexpr int dense_fourier_limit = 40;
 
 /// Normalisation of the longitude factor: 1/sqrt(2 pi) for m = 0, 1/sqrt(pi) otherwise.
 double longitude_norm(int m) { return m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi); }
-
-std::mutex& planner_mutex() {  // FFTW's planner is the one thing in it that is not thread-safe
-  static std::mutex mutex;
-  return mutex;
-}
 
 }  // namespace
 

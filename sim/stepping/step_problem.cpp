@@ -48,7 +48,7 @@ double gap_floor(const Model& s, const Dynamics& d) {
 Suspension freeze(const Model& s, const Dynamics& d, std::span<const Coefficients> frozen,
                   std::span<const Motion> likely) {
   const NumericsParameters& n = s.scene.numerics;
-  const SuspensionOptions options = suspension_options(n, smallest_radius(sizes(d)));
+  const SuspensionOptions options = suspension_options(n, smallest_radius(sizes(d)), solve_tolerance(s.scene));
   std::vector<Coefficients> expected;
   if (n.implicit_tension)
     for (const Motion& m : likely) expected.push_back(m.tension);

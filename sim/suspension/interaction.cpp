@@ -1,6 +1,7 @@
 #include "sim/suspension/interaction.h"
 
 #include "sim/core/parallel.h"
+#include "sim/layers/kernels.h"
 
 #include <fmt/format.h>
 
@@ -12,18 +13,21 @@ namespace sim {
 
 namespace {
 
-/// Vesicles of which targets may need more than the coarse grid of another, both ways.
-std::vector<PairPlan> candidates(const Interaction& w, double coarse_spacings) {
+/// Vesicles of which targets may need more than the far field of another, both ways.
+std::vector<PairPlan> candidates(const Interaction& w, const InteractionOptions& options, bool only_near) {
   const std::vector<Sources>& coarse = *w.far.sources;
   std::vector<Box> boxes;
-  double spacing = 0;
+  double coarse_spacing = 0, fine_spacing = 0;
   for (std::size_t i = 0; i < w.sources.size(); ++i) {
     boxes.push_back(united(w.sources[i].box, coarse[i].box));
-    spacing = std::max(spacing, coarse[i].spacing.maxCoeff());
+    coarse_spacing = std::max(coarse_spacing, coarse[i].spacing.maxCoeff());
+    fine_spacing = std::max(fine_spacing, w.sources[i].spacing.maxCoeff());
   }
   Box all = boxes.front();
   for (const Box& box : boxes) all = united(all, box);
-  const double reach = coarse_spacings > 0 ? coarse_spacings * spacing : (all.high - all.low).norm();
+  const double reach = only_near                     ? options.near_spacings * fine_spacing
+                       : options.coarse_spacings > 0 ? options.coarse_spacings * coarse_spacing
+                                                     : (all.high - all.low).norm();
   std::vector<PairPlan> pairs;
   for (const auto& [i, j] : near_pairs(boxes, reach)) {
     pairs.push_back({i, j, {}, {}, {}, {}});
@@ -37,7 +41,7 @@ std::vector<PairPlan> candidates(const Interaction& w, double coarse_spacings) {
 
 /// Sorts the targets of a pair: those that need the fine grid, and those that need rows.
 void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> positions, const RotationPlan& rotation,
-          const InteractionOptions& options) {
+          const InteractionOptions& options, bool only_near) {
   const int j = pair.source;
   const Sources& s = w.sources[j];
   const Matrix& targets = w.far.groups[pair.target].points;
@@ -46,7 +50,7 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
   for (int k = 0; k < int(targets.rows()); ++k) {
     const Vec3 x = targets.row(k).transpose();
     const double to_box = distance(s.box, x);
-    if (coarse_reach > 0 && to_box >= coarse_reach) continue;
+    if (only_near ? to_box >= reach : coarse_reach > 0 && to_box >= coarse_reach) continue;
     if (options.near_rule && to_box < reach) {
       const auto [source, away] = nearest_source(s, x);
       if (away < (options.near_spacings + 1) * s.spacing[source]) {
@@ -60,7 +64,7 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
         }
       }
     }
-    pair.fine.push_back(k);
+    if (!only_near) pair.fine.push_back(k);
   }
 }
 
@@ -73,6 +77,46 @@ std::vector<Exclusion> exclusions(const std::vector<PairPlan>& pairs) {
     all.push_back(std::move(e));
   }
   return all;
+}
+
+/// Weighted densities as the fast sum takes them.
+FastStrengths strengths_of(const Sources& s, const SourceDensities& density) {
+  FastStrengths strengths;
+  strengths.force = stokeslet_factor * (density.force.array().colwise() * s.area.array()).matrix().transpose();
+  if (density.dual.size() == 0) return strengths;
+  strengths.dual.resize(6, s.points.rows());
+  const Points n = stresslet_factor * s.normals.transpose(), u = density.dual.transpose();
+  int c = 0;
+  for (int a = 0; a < 3; ++a)
+    for (int b = a; b < 3; ++b, ++c)
+      strengths.dual.row(c) = 0.5 * (n.row(a).cwiseProduct(u.row(b)) + n.row(b).cwiseProduct(u.row(a)));
+  return strengths;
+}
+
+FastInteraction plan_fast(Plans& plans, const Interaction& w, std::span<const Coefficients> positions,
+                          const FastChoice& choice, const std::vector<Exclusion>& excluded, double tolerance) {
+  const auto n = static_cast<int>(positions.size());
+  FastInteraction fast;
+  fast.spread.resize(std::size_t(n));
+  for (const Coefficients& x : positions)
+    fast.spread_basis.push_back(&plans.basis(x.order, spread_order(x.order, choice.finer)));
+  std::vector<FastBody> bodies(static_cast<std::size_t>(n));
+  std::vector<FastGroup> groups(static_cast<std::size_t>(n));
+  parallel_for(n, [&](int i) {
+    const auto k = std::size_t(i);
+    fast.spread[k] = make_sources(*fast.spread_basis[k], positions[k]);
+    bodies[k] = {fast.spread[k].points.transpose(), w.sources[k].points.transpose(),
+                 coarse_limit(tolerance) * fast.spread[k].spacing.maxCoeff()};
+    groups[k] = {w.far.groups[k].points.transpose(), i};
+  });
+  const bool dual = std::any_of(w.dual.begin(), w.dual.end(), [](char d) { return d != 0; });
+  fast.sum = plans.with_fast_parts(
+      [&](FastParts& parts) { return plan_fast_sum(choice.setting, bodies, groups, excluded, dual, parts); });
+  fast.finely.resize(std::size_t(n));
+  for (const PairLists::Group& group : fast.sum.pairs.groups)
+    for (const PairLists::Segment& segment : group.segments)
+      if (segment.level == 1) fast.finely[std::size_t(segment.body)] = 1;
+  return fast;
 }
 
 }  // namespace
@@ -99,28 +143,67 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
   std::vector<TargetGroup> groups;
   for (int i = 0; i < n; ++i) groups.push_back({coarse[i].points, i});
   w.far = plan_far_field(std::make_shared<const std::vector<Sources>>(std::move(coarse)), std::move(groups));
-  w.pairs = candidates(w, options.coarse_spacings);
+  std::vector<int> orders;
+  for (const Coefficients& x : positions) orders.push_back(x.order);
+  const bool dual = std::any_of(w.dual.begin(), w.dual.end(), [](char d) { return d != 0; });
+  const std::optional<FastChoice> fast = choose_fast(orders, *w.far.sources, w.sources, dual, options.far);
+  const bool only_near = fast.has_value();
+  w.pairs = candidates(w, options, only_near);
   parallel_for(int(w.pairs.size()),
-               [&](int k) { fill(w.pairs[k], w, positions, *rotations[w.pairs[k].source], options); });
+               [&](int k) { fill(w.pairs[k], w, positions, *rotations[w.pairs[k].source], options, only_near); });
   std::erase_if(w.pairs, [](const PairPlan& pair) { return pair.fine.empty() && pair.near.empty(); });
-  exclude(w.far, exclusions(w.pairs));
+  const std::vector<Exclusion> excluded = exclusions(w.pairs);
+  if (fast)
+    w.fast =
+        std::make_shared<const FastInteraction>(plan_fast(plans, w, positions, *fast, excluded, options.far.tolerance));
+  else
+    exclude(w.far, excluded);
   return w;
 }
+
+namespace {
+
+/// What all see of all but the near pairs: points x 3 a vesicle.
+std::vector<Matrix> fast_far_velocity(const Interaction& w, std::span<const Densities> densities) {
+  const FastInteraction& fast = *w.fast;
+  const std::size_t n = densities.size();
+  std::vector<FastStrengths> spread(n), fine(n);
+  parallel_for(int(n), [&](int i) {
+    const auto j = std::size_t(i);
+    const auto strengths = [&](const Basis& basis, const Sources& sources) {
+      return strengths_of(sources, {basis.synthesize(densities[j].force).values,
+                                    w.dual[j] ? basis.synthesize(densities[j].dual).values : Matrix()});
+    };
+    spread[j] = strengths(*fast.spread_basis[j], fast.spread[j]);
+    if (fast.finely[j]) fine[j] = strengths(*w.source_basis[j], w.sources[j]);
+  });
+  const std::vector<Points> velocity = fast_velocity(fast.sum, spread, fine);
+  std::vector<Matrix> result;
+  for (const Points& u : velocity) result.emplace_back(u.transpose());
+  return result;
+}
+
+}  // namespace
 
 std::vector<Coefficients> induced_velocity(const Interaction& w, std::span<const Densities> densities) {
   const int n = int(densities.size());
   std::vector<SourceDensities> coarse(n), fine(n);
-  std::vector<char> finely(n);  // few need both
-  for (const PairPlan& pair : w.pairs) finely[pair.source] = finely[pair.source] || !pair.fine.empty();
-  parallel_for(n, [&](int j) {
-    const auto sample = [&](const Basis& basis, SourceDensities& samples) {
-      samples.force = basis.synthesize(densities[j].force).values;
-      if (w.dual[j]) samples.dual = basis.synthesize(densities[j].dual).values;
-    };
-    sample(*w.target_basis[j], coarse[j]);
-    if (finely[j]) sample(*w.source_basis[j], fine[j]);
-  });
-  std::vector<Matrix> velocity = far_velocity(w.far, coarse);
+  std::vector<Matrix> velocity;
+  if (w.fast) {
+    velocity = fast_far_velocity(w, densities);
+  } else {
+    std::vector<char> finely(n);  // few need both
+    for (const PairPlan& pair : w.pairs) finely[pair.source] = finely[pair.source] || !pair.fine.empty();
+    parallel_for(n, [&](int j) {
+      const auto sample = [&](const Basis& basis, SourceDensities& samples) {
+        samples.force = basis.synthesize(densities[j].force).values;
+        if (w.dual[j]) samples.dual = basis.synthesize(densities[j].dual).values;
+      };
+      sample(*w.target_basis[j], coarse[j]);
+      if (finely[j]) sample(*w.source_basis[j], fine[j]);
+    });
+    velocity = far_velocity(w.far, coarse);
+  }
   std::vector<Coefficients> result(n);
   parallel_for(n, [&](int i) {
     const Matrix& targets = w.far.groups[i].points;

@@ -1,14 +1,16 @@
 // Hydrodynamic interaction: single and double layer of each vesicle, evaluated at the grid points of the others.
 //
-// All pairs are summed by the smooth rule on coarse source grids (far_field.h). Where that is not good enough, the
-// smooth rule on a finer grid of order q ~ p^(3/2) takes its place (section 3.1.10), and nearer than four of its local
-// spacings the near-singular rule of near.h, one row per target, assembled once per step. Pairs of this kind are few,
-// and found by cells. The interface is only "velocity at targets from densities on sources".
+// All pairs are summed by the smooth rule on coarse source grids, directly (far_field.h) or fast (fast_sum.h),
+// whichever costs less. Where that is not good enough, the smooth rule on a finer grid of order q ~ p^(3/2) takes its
+// place (section 3.1.10), and nearer than four of its local spacings the near-singular rule of near.h, one row per
+// target, assembled once per step. Pairs of this kind are few, and found by cells. The interface is only "velocity at
+// targets from densities on sources".
 #pragma once
 
 #include "sim/layers/far_field.h"
 #include "sim/layers/near.h"
 #include "sim/membrane/block.h"
+#include "sim/suspension/far_choice.h"
 
 namespace sim {
 
@@ -18,10 +20,12 @@ struct InteractionOptions {
   NearOrder near_order;
   double near_spacings = 4;    ///< targets nearer than this many local spacings use the near rule
   double coarse_spacings = 6;  ///< targets farther than this many spacings of the coarse grid use that grid; 0: none
+  FarOptions far = {};
 };
 
 /// What one vesicle makes at those targets of another that are excluded from the far field: by the smooth rule on its
-/// fine grid, or by rows, with the nearest point of the source for each of these.
+/// fine grid (where the far field is summed directly), or by rows, with the nearest point of the source for each of
+/// these.
 struct PairPlan {
   int target = 0, source = 0;
   std::vector<int> fine, near;
@@ -29,13 +33,22 @@ struct PairPlan {
   std::vector<NearestPoint> nearest;
 };
 
+/// The far field as a fast sum: vesicles are spread from grids of their own, and fine grids serve within the cut-off.
+struct FastInteraction {
+  FastSum sum;
+  std::vector<const Basis*> spread_basis;
+  std::vector<Sources> spread;
+  std::vector<char> finely;  ///< whose fine grid is seen
+};
+
 struct Interaction {
   std::vector<const Basis*> source_basis,
-      target_basis;              ///< fine source grids; target grids, which are the coarse source grids
-  FarField far;                  ///< on the coarse grids
-  std::vector<Sources> sources;  ///< on the fine grids
-  std::vector<PairPlan> pairs;   ///< by target, then source
-  std::vector<char> dual;        ///< per source vesicle: its viscosity contrast differs from 1
+      target_basis;                             ///< fine source grids; target grids, which are the coarse source grids
+  FarField far;                                 ///< on the coarse grids
+  std::shared_ptr<const FastInteraction> fast;  ///< in place of `far`, where it is cheaper
+  std::vector<Sources> sources;                 ///< on the fine grids
+  std::vector<PairPlan> pairs;                  ///< by target, then source
+  std::vector<char> dual;                       ///< per source vesicle: its viscosity contrast differs from 1
 };
 
 /// Throws std::domain_error when a target lies inside another vesicle.

@@ -30,7 +30,7 @@ Bodies bodies_of(Plans& plans, const Scene& scene, const State& state) {
     b.upsamplings.push_back(n.upsampling > 0 ? n.upsampling : upsampling_rate(plans, x, n.aliasing_tolerance));
   }
   b.pinned = pinned_tensions(plans, scene.flows, scene.buoyancy.gravity, b.materials, b.positions, sizes);
-  b.options = suspension_options(n, smallest_radius(sizes));
+  b.options = suspension_options(n, smallest_radius(sizes), 1e-7);
   return b;
 }
 

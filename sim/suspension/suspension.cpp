@@ -60,11 +60,18 @@ double smallest_radius(std::span<const AreaVolume> sizes) {
   return least;
 }
 
-SuspensionOptions suspension_options(const NumericsParameters& n, double smallest_radius) {
-  return {n.source_order,
-          {n.interaction_order, n.near_rule, {n.near_latitudes, n.near_longitudes}},
-          n.repulsion_strength,
-          n.repulsion_range.value_or(default_repulsion_range * smallest_radius)};
+SuspensionOptions suspension_options(const NumericsParameters& n, double smallest_radius, double tolerance) {
+  // Quadrature near vesicles errs by 3e-7.
+  constexpr double finest = 1e-8, coarsest = 1e-3;
+  SuspensionOptions options;
+  options.source_order = n.source_order;
+  options.interaction.source_order = n.interaction_order;
+  options.interaction.near_rule = n.near_rule;
+  options.interaction.near_order = {n.near_latitudes, n.near_longitudes};
+  options.interaction.far = {n.far_field, std::clamp(tolerance, finest, coarsest)};
+  options.repulsion_strength = n.repulsion_strength;
+  options.repulsion_range = n.repulsion_range.value_or(default_repulsion_range * smallest_radius);
+  return options;
 }
 
 Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, std::span<const Coefficients> positions,

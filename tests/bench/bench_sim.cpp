@@ -144,10 +144,11 @@ void direct_sum(benchmark::State& state) {
 }
 
 /// scenes/suspension.toml with another number of vesicles.
-Scene suspension_scene(int count) {
+Scene suspension_scene(int count, const char* method) {
   Scene scene = test::shear_scene(prolate(8, 1), 0.1, 1, "globally-implicit");
   scene.vesicles[0].reduced_volume = 0.9;
-  scene.numerics.gmres_tolerance = 1e-6;
+  scene.numerics.gmres_tolerance = 1e-4;
+  scene.numerics.far_field = method;
   PlacementParameters lattice;
   lattice.count = count;
   lattice.volume_fraction = 0.06;
@@ -157,10 +158,10 @@ Scene suspension_scene(int count) {
 }
 
 /// One product with the interactions of all vesicles, far, fine and near; on all processors.
-void suspension_product(benchmark::State& state) {
+void suspension_product(benchmark::State& state, const char* method) {
   omp_set_num_threads(omp_get_num_procs());
   Plans plans;
-  const Scene scene = suspension_scene(int(state.range(0)));
+  const Scene scene = suspension_scene(int(state.range(0)), method);
   const Model s = make_model(scene, plans);
   const Dynamics d = initial_dynamics(s);
   std::vector<Coefficients> x;
@@ -169,11 +170,14 @@ void suspension_product(benchmark::State& state) {
     x.push_back(v.position);
     densities.push_back({v.position, v.position});
   }
-  const Interaction w = plan_interaction(plans, x, s.materials, {});
-  double pairs = 0;
+  InteractionOptions options;
+  options.far = {method, 1e-4};
+  const Interaction w = plan_interaction(plans, x, s.materials, options);
+  double pairs = w.fast ? w.fast->sum.pairs.pairs() : 0;
   for (const TargetGroup& group : w.far.groups)
     for (std::size_t j = 0; j < x.size(); ++j)
-      if (int(j) != group.surface) pairs += double(group.points.rows()) * double((*w.far.sources)[j].area.size());
+      if (!w.fast && int(j) != group.surface)
+        pairs += double(group.points.rows()) * double((*w.far.sources)[j].area.size());
   for (const PairPlan& pair : w.pairs)
     pairs += double(pair.fine.size()) *
              (double(w.sources[pair.source].area.size()) - double((*w.far.sources)[pair.source].area.size()));
@@ -182,10 +186,10 @@ void suspension_product(benchmark::State& state) {
 }
 
 /// One step of backward Euler of all of them, and the most memory the process has held so far.
-void suspension_step(benchmark::State& state) {
+void suspension_step(benchmark::State& state, const char* method) {
   omp_set_num_threads(omp_get_num_procs());
   Plans plans;
-  const Scene scene = suspension_scene(int(state.range(0)));
+  const Scene scene = suspension_scene(int(state.range(0)), method);
   const Model s = make_model(scene, plans);
   const Dynamics d = initial_dynamics(s);
   int iterations = 0;
@@ -215,8 +219,10 @@ BENCHMARK_CAPTURE(step, contrast_1_with_reparametrization, 1.0, "auto")->HUNDRED
 BENCHMARK_CAPTURE(step, contrast_10_with_reparametrization, 10.0, "auto")->HUNDRED_STEPS;
 BENCHMARK(direct_sum)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 #define MANY Arg(8)->Arg(64)->Arg(256)->Iterations(1)->UseRealTime()->MeasureProcessCPUTime()->Unit(unit)
-BENCHMARK(suspension_product)->MANY;
-BENCHMARK(suspension_step)->MANY;
+BENCHMARK_CAPTURE(suspension_product, direct, "direct")->MANY;
+BENCHMARK_CAPTURE(suspension_product, fast, "fast")->Arg(1000)->MANY;
+BENCHMARK_CAPTURE(suspension_step, direct, "direct")->MANY;
+BENCHMARK_CAPTURE(suspension_step, fast, "fast")->Arg(1000)->MANY;
 BENCHMARK(evaluation)->Arg(8)->Arg(16)->Unit(unit);
 
 BENCHMARK_MAIN();

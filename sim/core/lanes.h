@@ -1,0 +1,47 @@
+// Vectors of numbers that the processor handles at once: four of double or eight of single precision.
+#pragma once
+
+#include <cmath>
+
+namespace sim {
+
+constexpr int lanes = 4;
+using Lane = double __attribute__((vector_size(lanes * sizeof(double))));
+
+template <class Real>
+struct LaneType;
+template <>
+struct LaneType<double> {
+  using type = Lane;
+  static constexpr int count = lanes;
+};
+template <>
+struct LaneType<float> {
+  static constexpr int count = 2 * lanes;
+  using type = float __attribute__((vector_size(count * sizeof(float))));
+};
+template <class Real>
+using LaneOf = typename LaneType<Real>::type;
+template <class Real>
+constexpr int lane_count = LaneType<Real>::count;
+
+/// Any address, not only those of whole vectors.
+template <class Real>
+LaneOf<Real> load_lane(const Real* from) {
+  LaneOf<Real> v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return v;
+}
+template <class Real>
+void store_lane(Real* to, LaneOf<Real> v) {
+  __builtin_memcpy(to, &v, sizeof v);
+}
+
+template <class Vector>
+Vector lane_sqrt(Vector v) {
+  Vector r{};
+  for (unsigned i = 0; i < sizeof v / sizeof v[0]; ++i) r[i] = std::sqrt(v[i]);
+  return r;
+}
+
+}  // namespace sim

@@ -1,0 +1,54 @@
+// Single and double layer of many bodies at many targets in a time that grows as the number of points: the smooth part
+// of the kernels by Fourier transforms, from coarse points, the rest within a cut-off.
+//
+//   u = mesh(all bodies) + residual(bodies that are seen) - smooth(bodies that are not),    u = sum of S f + D Q,
+//   S = I/r + r r/r^3,  D Q = r (r.Q r)/r^5.
+//
+// What is not seen, the own surface and near pairs, is taken out again by the very points that put it in, so that the
+// error of their coarse rule cancels.
+#pragma once
+
+#include "sim/fast/pair_sums.h"
+
+namespace sim {
+
+/// How a sum is split and with which error.
+struct FastSetting {
+  double cutoff = 1;              ///< length
+  double wave_number = 14;        ///< c = K times the cut-off
+  double accuracy = 1e-5;         ///< of the polynomials
+  int window = 6;                 ///< nodes
+  double oversampling = 1.2;      ///< of the mesh
+  bool single_precision = false;  ///< of the sums over pairs
+};
+/// For a relative error of the velocities, with or without double layers. The cut-off is a matter of cost.
+FastSetting fast_setting(double tolerance, bool dual);
+
+/// One geometry; strengths may change.
+struct FastSum {
+  FastSetting setting;
+  std::shared_ptr<const KernelSplit> split;
+  std::shared_ptr<const Mesh> mesh;
+  MeshPoints sources, targets;
+  PairLists pairs;
+  std::vector<Eigen::Index> first_source, first_target;  ///< of bodies and of groups, and the ends
+};
+
+/// Split, window and mesh depend on few numbers: whoever makes many sums keeps them.
+struct FastParts {
+  std::shared_ptr<const KernelSplit> split;
+  std::shared_ptr<const Window> window;
+  std::shared_ptr<const Mesh> mesh;
+  FastSetting setting;
+  std::array<int, 3> nodes{};
+};
+
+/// `dual`: some strengths have double layers. `parts`: of an earlier sum; renewed where they do not fit.
+FastSum plan_fast_sum(const FastSetting&, const std::vector<FastBody>&, const std::vector<FastGroup>&,
+                      const std::vector<Exclusion>&, bool dual, FastParts& parts);
+
+/// Velocity at the targets of each group. Does not depend on the number of threads.
+std::vector<Points> fast_velocity(const FastSum&, std::span<const FastStrengths> coarse,
+                                  std::span<const FastStrengths> fine);
+
+}  // namespace sim

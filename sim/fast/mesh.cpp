@@ -1,0 +1,207 @@
+#include "sim/core/fftw_planner.h"
+#include "sim/core/lanes.h"
+#include "sim/core/parallel.h"
+#include "sim/fast/mesh_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <tuple>
+
+namespace sim {
+
+namespace {
+
+using std::numbers::pi;
+
+/// The least product of 2, 3, 5 and 7 that is no less.
+int good_size(double least) {
+  for (int n = std::max(1, static_cast<int>(std::ceil(least - 1e-9)));; ++n) {
+    int rest = n;
+    for (const int factor : {2, 3, 5, 7})
+      while (rest % factor == 0) rest /= factor;
+    if (rest == 1) return n;
+  }
+}
+
+fftw_complex* as_complex(double* data) { return reinterpret_cast<fftw_complex*>(data); }
+
+/// Fourier transform of -(R - r)^2/(2R), r < R, over R^4; t = k R.
+double truncated_kernel(double t) {
+  return -4 * pi * (t == 0 ? 1.0 / 60 : (2 + std::cos(t) - 3 * std::sin(t) / t) / (t * t * t * t));
+}
+
+/// Cosine transform in three dimensions, in place; x runs fastest.
+void cosine_transform(RawVector<double>& values, const std::array<int, 3>& count) {
+  fftw_plan plan = nullptr;
+  {
+    const std::lock_guard lock(planner_mutex());
+    plan = fftw_plan_r2r_3d(count[2], count[1], count[0], values.data(), values.data(), FFTW_REDFT00, FFTW_REDFT00,
+                            FFTW_REDFT00, FFTW_ESTIMATE);
+  }
+  fftw_execute(plan);
+  const std::lock_guard lock(planner_mutex());
+  fftw_destroy_plan(plan);
+}
+
+}  // namespace
+
+double Mesh::spacing(double wave_number, double oversampling) { return pi / (oversampling * wave_number); }
+
+std::array<int, 3> Mesh::nodes_for(const Eigen::Vector3d& sides, double spacing, int width) {
+  std::array<int, 3> nodes{};
+  // A window reaches half its width beyond a point on both sides; another node takes up rounding.
+  for (int d = 0; d < 3; ++d) nodes[d] = good_size(std::max(sides[d] / spacing, 0.0) + width + 1);
+  return nodes;
+}
+
+double Mesh::padded_nodes(const std::array<int, 3>& nodes) { return 8.0 * nodes[0] * nodes[1] * nodes[2]; }
+
+Mesh::Mesh(const KernelSplit& split, const Window& window, double oversampling, const std::array<int, 3>& nodes)
+    : plan_(std::make_unique<const Plan>(split, window, oversampling, nodes)) {}
+Mesh::~Mesh() = default;
+
+Mesh::Plan::Plan(const KernelSplit& split, const Window& w, double oversampling, const std::array<int, 3>& node_counts)
+    : window(w), step(spacing(split.wave_number(), oversampling)), nodes(node_counts) {
+  for (int d = 0; d < 3; ++d) full[d] = 2 * nodes[d];
+  cut = step * std::hypot(nodes[0], nodes[1], nodes[2]);
+  padded_width = (w.width() + lanes - 1) / lanes * lanes;
+  row = (static_cast<std::size_t>(std::max(full[0] + 2, nodes[0] + padded_width)) + lanes - 1) / lanes * lanes;
+  if (row % 128 == 0) row += lanes;  // rows a multiple of 1024 bytes apart share lines of the cache
+  plane = static_cast<std::size_t>(full[1]) * row;
+  block = std::clamp(nodes[2] / 8, 2, w.width());
+  blocks = (nodes[2] + block - 1) / block;
+  make_transforms();
+  make_multiplier(split);
+}
+
+Mesh::Plan::~Plan() {
+  const std::lock_guard lock(planner_mutex());
+  for (fftw_plan plan : fftw) fftw_destroy_plan(plan);
+}
+
+void Mesh::Plan::make_transforms() {
+  RawVector<double> whole(plane), columns(static_cast<std::size_t>(2 * full[2]) * batch);
+  const int half = full[0] / 2 + 1, reals = static_cast<int>(row), spectra = static_cast<int>(row / 2);
+  const unsigned flags = FFTW_ESTIMATE;  // the same plan in every run
+  fftw_complex *in_plane = as_complex(whole.data()), *in_batch = as_complex(columns.data());
+  const std::lock_guard lock(planner_mutex());
+  fftw[to_x] = fftw_plan_many_dft_r2c(1, &full[0], nodes[1], whole.data(), nullptr, 1, reals, in_plane, nullptr, 1,
+                                      spectra, flags);
+  fftw[from_x] = fftw_plan_many_dft_c2r(1, &full[0], nodes[1], in_plane, nullptr, 1, spectra, whole.data(), nullptr, 1,
+                                        reals, flags);
+  for (const auto& [kind, sign] : {std::pair(to_y, FFTW_FORWARD), std::pair(from_y, FFTW_BACKWARD)})
+    fftw[kind] = fftw_plan_many_dft(1, &full[1], half, in_plane, nullptr, spectra, 1, in_plane, nullptr, spectra, 1,
+                                    sign, flags);
+  for (const auto& [kind, sign] : {std::pair(to_z, FFTW_FORWARD), std::pair(from_z, FFTW_BACKWARD)})
+    fftw[kind] =
+        fftw_plan_many_dft(1, &full[2], batch, in_batch, nullptr, batch, 1, in_batch, nullptr, batch, 1, sign, flags);
+}
+
+/// The smooth kernel, windows divided out, on a mesh large enough for it, cut to the doubled mesh in space.
+void Mesh::Plan::make_multiplier(const KernelSplit& split) {
+  std::array<int, 3> large{}, count{};
+  std::array<std::vector<double>, 3> deconvolved;
+  for (int d = 0; d < 3; ++d) {
+    large[d] = good_size(((cut + 1) / step + nodes[d]) / 2 + 1);  // a period of R, the side and the smoothing
+    count[d] = large[d] + 1;
+    for (int n = 0; n < count[d]; ++n) deconvolved[d].push_back(std::pow(window.transform(pi * n / large[d]), -2));
+  }
+  const std::size_t nx = std::size_t(count[0]), ny = std::size_t(count[1]);
+  RawVector<double> kernel(nx * ny * std::size_t(count[2]));
+  const double volume = 8.0 * large[0] * large[1] * large[2] * std::pow(step, 3);
+  parallel_for(count[2], [&](int z) {
+    for (int y = 0; y < count[1]; ++y)
+      for (int x = 0; x < count[0]; ++x) {
+        const double k = pi / step * std::hypot(double(x) / large[0], double(y) / large[1], double(z) / large[2]);
+        kernel[(std::size_t(z) * ny + std::size_t(y)) * nx + std::size_t(x)] =
+            k > split.wave_number()
+                ? 0
+                : -std::pow(cut, 4) * truncated_kernel(k * cut) * split.multiplier(k) / volume *
+                      deconvolved[0][std::size_t(x)] * deconvolved[1][std::size_t(y)] * deconvolved[2][std::size_t(z)];
+      }
+  });
+  cosine_transform(kernel, count);
+  const std::array<int, 3> octant{nodes[0] + 1, nodes[1] + 1, nodes[2] + 1};
+  const std::size_t mx = std::size_t(octant[0]), my = std::size_t(octant[1]), mz = std::size_t(octant[2]);
+  RawVector<double> near(mx * my * mz);
+  for (std::size_t z = 0; z < mz; ++z)
+    for (std::size_t y = 0; y < my; ++y)
+      std::copy_n(kernel.begin() + std::ptrdiff_t((z * ny + y) * nx), mx,
+                  near.begin() + std::ptrdiff_t((z * my + y) * mx));
+  cosine_transform(near, octant);
+  multiplier.resize(near.size());
+  const double share = 1 / (8.0 * nodes[0] * nodes[1] * nodes[2]);
+  parallel_for(octant[1], [&](int y) {
+    for (std::size_t x = 0; x < mx; ++x)
+      for (std::size_t z = 0; z < mz; ++z)
+        multiplier[(std::size_t(y) * mx + x) * mz + z] = near[(z * my + std::size_t(y)) * mx + x] * share;
+  });
+}
+
+MeshPoints Mesh::place(const Points& points, const Eigen::Vector3d& middle, bool slopes) const {
+  const Plan& m = *plan_;
+  const int width = m.window.width(), padded = m.padded_width;
+  const std::size_t stride = 3 * static_cast<std::size_t>(padded);
+  MeshPoints placed;
+  placed.count = points.cols();
+  const auto count = static_cast<std::size_t>(placed.count);
+  placed.start.resize(3 * count);
+  placed.windows.resize(stride * count);
+  if (slopes) placed.slopes.resize(stride * count);
+  constexpr int piece = 512;
+  parallel_for(static_cast<int>((placed.count + piece - 1) / piece), [&](int part) {
+    const Eigen::Index end = std::min<Eigen::Index>(placed.count, Eigen::Index(part + 1) * piece);
+    for (Eigen::Index k = Eigen::Index(part) * piece; k < end; ++k)
+      for (int d = 0; d < 3; ++d) {
+        const std::size_t slot = std::size_t(3 * k + d);
+        const double x = (points(d, k) - middle[d]) / m.step + (m.nodes[d] - 1) / 2.0, low = x - width / 2.0;
+        const double first = std::ceil(low);
+        if (!(first >= 0 && first + width <= m.nodes[d])) throw std::invalid_argument("a point lies outside the mesh");
+        placed.start[slot] = static_cast<int>(first);
+        double* w = &placed.windows[slot * std::size_t(padded)];
+        double* s = slopes ? &placed.slopes[slot * std::size_t(padded)] : nullptr;
+        m.window.evaluate(first - low, w, s);
+        for (int j = width; j < padded; ++j) w[j] = 0;
+        for (int j = 0; s && j < padded; ++j) s[j] = j < width ? s[j] / m.step : 0;
+      }
+  });
+  // By blocks of planes, then by columns of 8 x 8 nodes.
+  std::vector<std::tuple<int, int, int, int>> keys;
+  for (std::size_t k = 0; k < count; ++k) {
+    const int* at = &placed.start[3 * k];
+    keys.emplace_back(at[2] / m.block, at[1] / 8, at[0] / 8, static_cast<int>(k));
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> begin(std::size_t(m.blocks) + 1, 0);
+  for (const auto& [block, y, x, k] : keys) {
+    placed.order.push_back(k);
+    ++begin[std::size_t(block) + 1];
+  }
+  for (int b = 0; b < m.blocks; ++b) begin[std::size_t(b) + 1] += begin[std::size_t(b)];
+  placed.first.push_back(0);
+  for (int b = 0; b < m.blocks; ++b) {
+    const int reach = (width + m.block - 1) / m.block;  // windows of points in so many earlier blocks reach here
+    for (std::size_t i = begin[std::size_t(std::max(0, b - reach))]; i < begin[std::size_t(b) + 1]; ++i)
+      if (placed.start[3 * std::size_t(placed.order[i]) + 2] + width > b * m.block)
+        placed.touching.push_back(placed.order[i]);
+    placed.first.push_back(static_cast<int>(placed.touching.size()));
+  }
+  return placed;
+}
+
+void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
+                        Points& velocity) const {
+  const Plan& m = *plan_;
+  std::vector<Plan::Field> fields(dual.cols() > 0 ? 4 : 3);
+  for (Plan::Field& field : fields) field.resize(m.plane * std::size_t(m.nodes[2]));
+  m.spread(sources, force, dual, fields);
+  m.forward_planes(fields);
+  m.multiply_columns(fields);
+  m.backward_planes(fields);
+  m.read(fields, targets, velocity);
+  velocity.colwise() += 2 / m.cut * force.rowwise().sum();
+}
+
+}  // namespace sim

@@ -1,0 +1,63 @@
+// The smooth part of the kernels summed over all points by Fourier transforms on a mesh. Lengths are in units of the
+// cut-off of the split.
+//
+// With f^, Q^ the sums of strength * exp(-i k.y) the velocity is u^ = b(k) [k^2 g - k (k.g) - (i/6) k^2 k t], where
+// g = f^ - (i/3) Q^ k, t = tr Q^: four meshes, three of the force less a third of the divergence of Q, which the slopes
+// of the window give, and one of the trace; three come back.
+//
+// In free space the biharmonic function r is replaced by -(R - r)^2/(2R), 0 beyond R, which differs from it by a
+// constant and by r^2 within the distances that occur, and 2/R times the net force makes up for it. Meshes are doubled
+// in each direction, so that no image is seen.
+#pragma once
+
+#include "sim/core/raw_memory.h"
+#include "sim/fast/window.h"
+
+#include <Eigen/Dense>
+
+#include <array>
+#include <memory>
+#include <span>
+
+namespace sim {
+
+using Points = Eigen::Matrix3Xd;                           ///< a point or vector a column
+using Tensors = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< symmetric: xx, xy, xz, yy, yz, zz
+
+/// Points on a mesh with their windows.
+struct MeshPoints {
+  Eigen::Index count = 0;
+  std::vector<int> start;             ///< 3 a point: the first node in x, y, z
+  RawVector<double> windows, slopes;  ///< 3 a point, padded to whole vectors; slopes empty unless asked for
+  std::vector<int> order;             ///< neighbours together
+  std::vector<int> touching, first;   ///< the points whose windows reach into block b: touching[first[b]] ...
+};
+
+/// Plan: a free-space mesh of so many nodes; immutable.
+class Mesh {
+ public:
+  Mesh(const KernelSplit&, const Window&, double oversampling, const std::array<int, 3>& nodes);
+  ~Mesh();
+  Mesh(const Mesh&) = delete;
+
+  /// Distance of neighbouring nodes.
+  static double spacing(double wave_number, double oversampling);
+  /// The least good numbers of nodes for points that fill a box of these sides.
+  static std::array<int, 3> nodes_for(const Eigen::Vector3d& sides, double spacing, int width);
+  /// Transforms are of this many nodes.
+  static double padded_nodes(const std::array<int, 3>& nodes);
+
+  /// Points in a box around the middle of the mesh, which is at `middle`. Throws std::invalid_argument when a window
+  /// would leave the mesh.
+  MeshPoints place(const Points&, const Eigen::Vector3d& middle, bool slopes) const;
+  /// Adds the smooth part of all sources at all targets; without double layer `dual` has no columns. Does not depend on
+  /// the number of threads.
+  void add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
+                    Points& velocity) const;
+
+ private:
+  struct Plan;
+  std::unique_ptr<const Plan> plan_;
+};
+
+}  // namespace sim

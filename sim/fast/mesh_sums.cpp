@@ -1,0 +1,216 @@
+#include "sim/core/lanes.h"
+#include "sim/core/parallel.h"
+#include "sim/fast/mesh_plan.h"
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+fftw_complex* complex_of(double* data) { return reinterpret_cast<fftw_complex*>(data); }
+
+/// The force and divergence of one point, as three numbers a channel: factors of values, slopes in y and z, and in x.
+struct PointStrength {
+  double force[3], gradient[3][3], trace;
+};
+
+PointStrength strength_of(const Points& force, const Tensors& dual, Eigen::Index k) {
+  PointStrength s{{force(0, k), force(1, k), force(2, k)}, {}, 0};
+  if (dual.cols() == 0) return s;
+  constexpr int component[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  // The force less a third of the divergence of Q: slopes are those in the place of the node.
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) s.gradient[a][b] = -dual(component[a][b], k) / 3;
+  s.trace = dual(0, k) + dual(3, k) + dual(5, k);
+  return s;
+}
+
+/// Adds a row of a window, in whole vectors.
+template <int vectors>
+void add_row(double* to, double value, const Lane* window) {
+  for (int v = 0; v < vectors; ++v) store_lane(to + lanes * v, load_lane(to + lanes * v) + value * window[v]);
+}
+template <int vectors>
+void add_row(double* to, double value, const Lane* window, double slope, const Lane* slopes) {
+  for (int v = 0; v < vectors; ++v)
+    store_lane(to + lanes * v, load_lane(to + lanes * v) + value * window[v] + slope * slopes[v]);
+}
+
+/// Calls body(number of vectors that hold a padded window), known to the compiler.
+template <class Body>
+void with_vectors(int padded_width, Body&& body) {
+  switch (padded_width / lanes) {
+    case 1:
+      return body(std::integral_constant<int, 1>());
+    case 2:
+      return body(std::integral_constant<int, 2>());
+    case 3:
+      return body(std::integral_constant<int, 3>());
+    default:
+      return body(std::integral_constant<int, 4>());
+  }
+}
+
+template <int vectors>
+void load_window(const double* from, Lane* window) {
+  for (int v = 0; v < vectors; ++v) window[v] = load_lane(from + lanes * v);
+}
+
+}  // namespace
+
+void Mesh::Plan::spread(const MeshPoints& points, const Points& force, const Tensors& dual,
+                        std::span<Field> fields) const {
+  const int width = window.width();
+  with_vectors(padded_width, [&](auto count) {
+    constexpr int vectors = count.value, padded = vectors * lanes;
+    parallel_for(blocks, [&](int b) {
+      const int z0 = b * block, z1 = std::min(nodes[2], z0 + block);
+      for (Field& field : fields) std::memset(&field[at(z0, 0, 0)], 0, std::size_t(z1 - z0) * plane * sizeof(double));
+      for (int i = points.first[std::size_t(b)]; i < points.first[std::size_t(b) + 1]; ++i) {
+        const std::size_t k = std::size_t(points.touching[std::size_t(i)]);
+        const int* start = &points.start[3 * k];
+        const double *wx = &points.windows[3 * padded * k], *wy = wx + padded, *wz = wy + padded;
+        const PointStrength s = strength_of(force, dual, Eigen::Index(k));
+        Lane values[vectors], slopes[vectors] = {};
+        load_window<vectors>(wx, values);
+        const double *dx = nullptr, *dy = nullptr, *dz = nullptr;
+        if (fields.size() == 4) {
+          dx = &points.slopes[3 * padded * k];
+          dy = dx + padded;
+          dz = dy + padded;
+          load_window<vectors>(dx, slopes);
+        }
+        for (int z = std::max(0, z0 - start[2]); z < std::min(width, z1 - start[2]); ++z)
+          for (int y = 0; y < width; ++y) {
+            const std::size_t to = at(start[2] + z, start[1] + y, start[0]);
+            const double w = wy[y] * wz[z];
+            if (fields.size() == 3) {
+              for (std::size_t c = 0; c < 3; ++c) add_row<vectors>(&fields[c][to], s.force[c] * w, values);
+              continue;
+            }
+            const double in_y = dy[y] * wz[z], in_z = wy[y] * dz[z];
+            for (std::size_t c = 0; c < 3; ++c)
+              add_row<vectors>(&fields[c][to], s.force[c] * w + s.gradient[c][1] * in_y + s.gradient[c][2] * in_z,
+                               values, s.gradient[c][0] * w, slopes);
+            add_row<vectors>(&fields[3][to], s.trace * w, values);
+          }
+      }
+    });
+  });
+}
+
+void Mesh::Plan::forward_planes(std::span<Field> fields) const {
+  parallel_for(int(fields.size()) * nodes[2], [&](int task) {
+    double* g = &fields[std::size_t(task / nodes[2])][at(task % nodes[2], 0, 0)];
+    fftw_execute_dft_r2c(fftw[to_x], g, complex_of(g));
+    fftw_execute_dft(fftw[to_y], complex_of(g), complex_of(g));
+  });
+}
+
+void Mesh::Plan::backward_planes(std::span<Field> fields) const {
+  parallel_for(3 * nodes[2], [&](int task) {
+    double* g = &fields[std::size_t(task / nodes[2])][at(task % nodes[2], 0, 0)];
+    fftw_execute_dft(fftw[from_y], complex_of(g), complex_of(g));
+    fftw_execute_dft_c2r(fftw[from_x], complex_of(g), g);
+  });
+}
+
+namespace {
+
+/// u = b [k^2 g - k (k.g + (i/6) k^2 t)] for `width` columns in x of one z; numbers are pairs of doubles.
+struct ColumnFactors {
+  double kx[2 * 16], b[2 * 16];
+};
+void apply_kernel(const ColumnFactors& f, double ky, double kz, int width, double* const* channels, std::size_t offset,
+                  bool dual) {
+  double *u = channels[0] + offset, *v = channels[1] + offset, *w = channels[2] + offset;
+  const double* t = channels[3] + offset;
+  for (int i = 0; i < 2 * width; i += 2) {
+    const double kx = f.kx[i], m = f.b[i], square = m * (kx * kx + ky * ky + kz * kz), sixth = square / 6;
+    for (int part = 0; part < 2; ++part) {
+      double along = m * (kx * u[i + part] + ky * v[i + part] + kz * w[i + part]);
+      // The real part of i t is less the imaginary one of t.
+      if (dual) along += part == 0 ? -sixth * t[i + 1] : sixth * t[i];
+      u[i + part] = square * u[i + part] - along * kx;
+      v[i + part] = square * v[i + part] - along * ky;
+      w[i + part] = square * w[i + part] - along * kz;
+    }
+  }
+}
+
+}  // namespace
+
+void Mesh::Plan::multiply_columns(std::span<Field> fields) const {
+  const int half = full[0] / 2 + 1, pieces = (half + batch - 1) / batch;
+  const std::size_t mx = std::size_t(nodes[0]) + 1, mz = std::size_t(nodes[2]) + 1;
+  const auto wave = [&](int n, int d) {
+    return std::numbers::pi / step * (n <= nodes[d] ? n : n - full[d]) / nodes[d];
+  };
+  const auto mirrored = [&](int n, int d) { return std::size_t(n <= nodes[d] ? n : full[d] - n); };
+  parallel_for(full[1], [&](int y) {
+    const std::size_t length = std::size_t(2 * batch) * std::size_t(full[2]);
+    RawVector<double> buffer(4 * length);
+    double* channels[4];
+    for (std::size_t c = 0; c < 4; ++c) channels[c] = &buffer[c * length];
+    for (int piece = 0; piece < pieces; ++piece) {
+      const int x0 = piece * batch, width = std::min(batch, half - x0);
+      const std::size_t bytes = std::size_t(2 * width) * sizeof(double);
+      for (std::size_t c = 0; c < fields.size(); ++c) {
+        if (width < batch)
+          std::memset(channels[c], 0, length * sizeof(double));
+        else
+          std::memset(channels[c] + length / 2, 0, length / 2 * sizeof(double));
+        for (int z = 0; z < nodes[2]; ++z)
+          std::memcpy(channels[c] + std::size_t(2 * batch) * std::size_t(z), &fields[c][at(z, y, 2 * x0)], bytes);
+        fftw_execute_dft(fftw[to_z], complex_of(channels[c]), complex_of(channels[c]));
+      }
+      ColumnFactors factors{};
+      for (int i = 0; i < width; ++i) factors.kx[2 * i] = wave(x0 + i, 0);
+      for (int z = 0; z < full[2]; ++z) {
+        for (int i = 0; i < width; ++i)
+          factors.b[2 * i] = multiplier[(mirrored(y, 1) * mx + std::size_t(x0 + i)) * mz + mirrored(z, 2)];
+        apply_kernel(factors, wave(y, 1), wave(z, 2), width, channels, std::size_t(2 * batch) * std::size_t(z),
+                     fields.size() == 4);
+      }
+      for (std::size_t c = 0; c < 3; ++c) {
+        fftw_execute_dft(fftw[from_z], complex_of(channels[c]), complex_of(channels[c]));
+        for (int z = 0; z < nodes[2]; ++z)
+          std::memcpy(&fields[c][at(z, y, 2 * x0)], channels[c] + std::size_t(2 * batch) * std::size_t(z), bytes);
+      }
+    }
+  });
+}
+
+void Mesh::Plan::read(std::span<const Field> fields, const MeshPoints& points, Points& velocity) const {
+  const int width = window.width();
+  constexpr int piece = 256;
+  with_vectors(padded_width, [&](auto count) {
+    constexpr int vectors = count.value, padded = vectors * lanes;
+    parallel_for(int((points.count + piece - 1) / piece), [&](int part) {
+      const std::size_t end = std::min(std::size_t(points.count), std::size_t(part + 1) * piece);
+      for (std::size_t i = std::size_t(part) * piece; i < end; ++i) {
+        const std::size_t k = std::size_t(points.order[i]);
+        const int* start = &points.start[3 * k];
+        const double *wx = &points.windows[3 * padded * k], *wy = wx + padded, *wz = wy + padded;
+        Lane sums[3][vectors] = {};
+        for (int z = 0; z < width; ++z)
+          for (int y = 0; y < width; ++y) {
+            const std::size_t from = at(start[2] + z, start[1] + y, start[0]);
+            const double w = wy[y] * wz[z];
+            for (std::size_t c = 0; c < 3; ++c)
+              for (int v = 0; v < vectors; ++v) sums[c][v] += w * load_lane(&fields[c][from + std::size_t(lanes * v)]);
+          }
+        for (int c = 0; c < 3; ++c) {
+          Lane sum{};
+          for (int v = 0; v < vectors; ++v) sum += load_lane(wx + lanes * v) * sums[c][v];
+          velocity(c, Eigen::Index(k)) += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+        }
+      }
+    });
+  });
+}
+
+}  // namespace sim

@@ -1,0 +1,335 @@
+#include "sim/fast/pair_sums.h"
+
+#include "sim/core/cells.h"
+#include "sim/core/lanes.h"
+#include "sim/core/parallel.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace sim {
+
+namespace {
+
+constexpr int source_patch = 8, unrolled = 4;  // lists are a multiple of that long
+
+Box box_of(const Points& points) {
+  constexpr double huge = std::numeric_limits<double>::max();
+  if (points.cols() == 0) return {Vec3::Constant(huge), Vec3::Constant(-huge)};
+  return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
+}
+
+PairLists::Level level_of(const Points& points, const Vec3& centre) {
+  if (points.cols() > std::numeric_limits<std::uint16_t>::max())
+    throw std::invalid_argument("a body of the fast sum has at most 65535 points");
+  PairLists::Level level{divide(points, source_patch), Points(3, points.cols())};
+  for (Eigen::Index k = 0; k < points.cols(); ++k)
+    level.points.col(k) = points.col(level.patches.order[std::size_t(k)]) - centre;
+  level.patches.centres.colwise() -= centre;
+  return level;
+}
+
+/// The points of a patch from a centre, one a lane; lanes beyond its end repeat the last.
+template <class Real>
+struct PatchLanes {
+  LaneOf<Real> x[3];
+};
+template <class Real>
+PatchLanes<Real> lanes_of(const Points& points, std::span<const int> members, const Vec3& centre) {
+  PatchLanes<Real> p;
+  for (int d = 0; d < 3; ++d)
+    for (int l = 0; l < lane_count<Real>; ++l)
+      p.x[d][l] = static_cast<Real>(points(d, members[std::min<std::size_t>(l, members.size() - 1)]) - centre[d]);
+  return p;
+}
+
+std::span<const int> members_of(const Patches& patches, int patch) {
+  return {patches.order.begin() + patches.first[std::size_t(patch)],
+          patches.order.begin() + patches.first[std::size_t(patch) + 1]};
+}
+
+/// What a patch of targets sees of a body, appended to the list of its group.
+template <class Real>
+void see(PairLists::Group& group, int patch, int number, const PairLists::Body& body, double fine_within,
+         std::uint32_t seeing) {
+  const Vec3 middle = group.patches.centres.col(patch) - body.centre;
+  const double radius = group.patches.radii[std::size_t(patch)];
+  const auto away = [&](const PairLists::Level& level, int b) {
+    return (level.patches.centres.col(b) - middle).norm() - level.patches.radii[std::size_t(b)] - radius;
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int b = 0; b < body.levels[0].patches.count(); ++b) nearest = std::min(nearest, away(body.levels[0], b));
+  if (nearest > 1) return;
+  const int finely = nearest < fine_within && body.levels[1].points.cols() > 0;
+  const PairLists::Level& level = body.levels[std::size_t(finely)];
+  const PatchLanes<Real> targets = lanes_of<Real>(group.points, members_of(group.patches, patch), body.centre);
+  const std::size_t first = group.sources.size();
+  for (int b = 0; b < level.patches.count(); ++b) {
+    if (away(level, b) > 1) continue;
+    for (int k = level.patches.first[std::size_t(b)]; k < level.patches.first[std::size_t(b) + 1]; ++k) {
+      LaneOf<Real> square{};
+      for (int d = 0; d < 3; ++d) {
+        const LaneOf<Real> r = targets.x[d] - static_cast<Real>(level.points(d, k));
+        square += r * r;
+      }
+      Real least = square[0];
+      for (int l = 1; l < lane_count<Real>; ++l) least = std::min(least, square[l]);
+      if (least < 1) group.sources.push_back(static_cast<std::uint16_t>(k));
+    }
+  }
+  if (group.sources.size() == first) return;
+  while ((group.sources.size() - first) % unrolled != 0)
+    group.sources.push_back(static_cast<std::uint16_t>(level.points.cols()));
+  group.segments.push_back({number, patch, finely, static_cast<int>(group.sources.size() - first), seeing, first});
+}
+
+/// Lanes of a patch that are not among the excluded targets, which ascend.
+std::uint32_t seeing_lanes(const Patches& patches, int patch, const Exclusion* excluded) {
+  std::uint32_t seeing = 0;
+  const std::span<const int> members = members_of(patches, patch);
+  for (std::size_t l = 0; l < members.size(); ++l)
+    if (!excluded || !std::binary_search(excluded->targets.begin(), excluded->targets.end(), members[l]))
+      seeing |= std::uint32_t(1) << l;
+  return seeing;
+}
+
+}  // namespace
+
+double PairLists::pairs() const {
+  double sum = 0;
+  for (const Group& group : groups)
+    sum += static_cast<double>(group.sources.size()) * (single_precision ? lane_count<float> : lane_count<double>);
+  return sum;
+}
+
+PairLists plan_pairs(const std::vector<FastBody>& bodies, const std::vector<FastGroup>& groups,
+                     const std::vector<Exclusion>& exclusions, bool single_precision) {
+  PairLists lists;
+  lists.single_precision = single_precision;
+  lists.bodies.resize(bodies.size());
+  lists.groups.resize(groups.size());
+  std::vector<Box> boxes;
+  for (const FastBody& body : bodies) boxes.push_back(united(box_of(body.coarse), box_of(body.fine)));
+  for (const FastGroup& group : groups) boxes.push_back(box_of(group.points));
+  parallel_for(static_cast<int>(bodies.size()), [&](int j) {
+    const Vec3 centre = 0.5 * (boxes[std::size_t(j)].low + boxes[std::size_t(j)].high);
+    lists.bodies[std::size_t(j)] = {
+        centre, {level_of(bodies[std::size_t(j)].coarse, centre), level_of(bodies[std::size_t(j)].fine, centre)}};
+  });
+  std::vector<std::vector<int>> seen(groups.size());
+  const int bodies_end = static_cast<int>(bodies.size());
+  for (const auto& [a, b] : near_pairs(boxes, 1))
+    if (a < bodies_end && b >= bodies_end && groups[std::size_t(b - bodies_end)].body != a)
+      seen[std::size_t(b - bodies_end)].push_back(a);
+  std::vector<std::vector<const Exclusion*>> excluded(groups.size());
+  for (const Exclusion& e : exclusions) excluded[std::size_t(e.group)].push_back(&e);
+  parallel_for(static_cast<int>(groups.size()), [&](int g) {
+    const FastGroup& from = groups[std::size_t(g)];
+    PairLists::Group& group = lists.groups[std::size_t(g)];
+    group.points = from.points;
+    group.patches = divide(from.points, single_precision ? lane_count<float> : lane_count<double>);
+    if (from.body >= 0) group.taken.push_back({from.body, group.patches.order});
+    for (const Exclusion* e : excluded[std::size_t(g)])
+      if (e->surface != from.body) group.taken.push_back({e->surface, e->targets});
+    for (const int j : seen[std::size_t(g)]) {
+      const Exclusion* without = nullptr;
+      for (const Exclusion* e : excluded[std::size_t(g)])
+        if (e->surface == j) without = e;
+      for (int patch = 0; patch < group.patches.count(); ++patch) {
+        if (distance(boxes[std::size_t(j)], group.patches.centres.col(patch)) >
+            1 + group.patches.radii[std::size_t(patch)])
+          continue;
+        const std::uint32_t seeing = seeing_lanes(group.patches, patch, without);
+        if (seeing == 0) continue;
+        const auto look = single_precision ? see<float> : see<double>;
+        look(group, patch, j, lists.bodies[std::size_t(j)], bodies[std::size_t(j)].fine_within, seeing);
+      }
+    }
+  });
+  return lists;
+}
+
+namespace {
+
+enum class Part { residual, smooth };
+
+/// A source as the loops read it: point, force, and for the double layer Q and its trace.
+template <bool dual>
+constexpr int record_size = dual ? 13 : 6;
+
+template <class Real>
+using Polynomials = std::array<std::array<Real, KernelSplit::most_degree + 1>, 4>;
+
+/// Several polynomials at several arguments, interleaved so that no result waits for the last.
+template <int degree, int kinds, class Real>
+void evaluate(const Polynomials<Real>& p, const LaneOf<Real> (&x)[unrolled], int at, LaneOf<Real> (&value)[kinds][2]) {
+  for (int kind = 0; kind < kinds; ++kind)
+    for (int s = 0; s < 2; ++s) value[kind][s] = LaneOf<Real>{} + p[std::size_t(kind)][degree];
+#pragma GCC unroll 32
+  for (int n = degree - 1; n >= 0; --n)
+    for (int kind = 0; kind < kinds; ++kind)
+      for (int s = 0; s < 2; ++s) value[kind][s] = value[kind][s] * x[at + s] + p[std::size_t(kind)][std::size_t(n)];
+}
+
+/// Adds the listed sources at the targets of the lanes.
+template <class Real, int degree, bool dual, Part part>
+void add_sources(const Polynomials<Real>& polynomials, const Real* records, const std::uint16_t* list, int count,
+                 const LaneOf<Real> (&x)[3], LaneOf<Real> (&velocity)[3]) {
+  using V = LaneOf<Real>;
+  constexpr int kinds = dual ? 4 : 2;
+  V v0 = velocity[0], v1 = velocity[1], v2 = velocity[2];
+  for (int first = 0; first < count; first += unrolled) {
+    const Real* y[unrolled];
+    V square[unrolled], tau[unrolled];
+    for (int s = 0; s < unrolled; ++s) {
+      y[s] = records + std::size_t(list[first + s]) * record_size<dual>;
+      const V r0 = x[0] - y[s][0], r1 = x[1] - y[s][1], r2 = x[2] - y[s][2];
+      square[s] = r0 * r0 + r1 * r1 + r2 * r2;
+      tau[s] = Real(2) * square[s] - Real(1);
+    }
+    for (int pair = 0; pair < unrolled; pair += 2) {
+      V value[kinds][2];
+      evaluate<degree, kinds, Real>(polynomials, tau, pair, value);
+      for (int k = 0; k < 2; ++k) {
+        const Real* z = y[pair + k];
+        const V r0 = x[0] - z[0], r1 = x[1] - z[1], r2 = x[2] - z[2];
+        const auto inside = square[pair + k] < Real(1);
+        const V inverse = Real(1) / lane_sqrt(square[pair + k]), inverse2 = inverse * inverse,
+                inverse3 = inverse2 * inverse, none{};
+        const auto chosen = [&](const V& whole, const V& smooth) {
+          if constexpr (part == Part::smooth)
+            return V(inside ? smooth : whole);
+          else
+            return V(inside ? whole - smooth : none);
+        };
+        const V even = chosen(inverse, value[0][k]);
+        V along = chosen(inverse3, value[1][k]) * (r0 * z[3] + r1 * z[4] + r2 * z[5]);
+        if constexpr (dual) {
+          const V q0 = r0 * z[6] + r1 * z[7] + r2 * z[8], q1 = r0 * z[7] + r1 * z[9] + r2 * z[10],
+                  q2 = r0 * z[8] + r1 * z[10] + r2 * z[11];
+          const V cross = chosen(none, value[2][k]);
+          along += chosen(inverse3 * inverse2, value[3][k]) * (r0 * q0 + r1 * q1 + r2 * q2) + cross * z[12];
+          const V twice = cross + cross;
+          v0 += twice * q0;
+          v1 += twice * q1;
+          v2 += twice * q2;
+        }
+        v0 += even * z[3] + along * r0;
+        v1 += even * z[4] + along * r1;
+        v2 += even * z[5] + along * r2;
+      }
+    }
+  }
+  velocity[0] = v0;
+  velocity[1] = v1;
+  velocity[2] = v2;
+}
+
+template <class Real>
+using PairLoop = void (*)(const Polynomials<Real>&, const Real*, const std::uint16_t*, int, const LaneOf<Real> (&)[3],
+                          LaneOf<Real> (&)[3]);
+
+/// The loop for a degree, which is even.
+template <class Real, bool dual, Part part, int degree = KernelSplit::least_degree>
+PairLoop<Real> loop_of(int wanted) {
+  if constexpr (degree < KernelSplit::most_degree) {
+    if (wanted > degree) return loop_of<Real, dual, part, degree + 2>(wanted);
+  }
+  return add_sources<Real, degree, dual, part>;
+}
+
+/// All sources of one level of a body, and a point of no strength beyond the cut-off.
+template <class Real, bool dual>
+std::vector<Real> records_of(const PairLists::Level& level, const FastStrengths& s) {
+  std::vector<Real> records;
+  if (s.force.cols() == 0) return records;
+  records.resize(std::size_t(record_size<dual>) * std::size_t(level.points.cols() + 1));
+  Real* out = records.data();
+  for (const int k : level.patches.order) {
+    const Eigen::Index place = (out - records.data()) / record_size<dual>;
+    for (int d = 0; d < 3; ++d) {
+      out[d] = static_cast<Real>(level.points(d, place));
+      out[3 + d] = static_cast<Real>(s.force(d, k));
+    }
+    if constexpr (dual) {
+      if (s.dual.cols() > 0) {
+        for (int c = 0; c < 6; ++c) out[6 + c] = static_cast<Real>(s.dual(c, k));
+        out[12] = static_cast<Real>(s.dual(0, k) + s.dual(3, k) + s.dual(5, k));
+      }
+    }
+    out += record_size<dual>;
+  }
+  constexpr Real far = 1000;
+  out[0] = far;
+  return records;
+}
+
+template <class Real, bool dual>
+void add_all(const PairLists& lists, const KernelSplit& split, std::span<const FastStrengths> coarse,
+             std::span<const FastStrengths> fine, std::vector<Points>& velocity) {
+  Polynomials<Real> polynomials{};
+  for (std::size_t kind = 0; kind < 4; ++kind)
+    std::copy(split.polynomial(Radial(kind)).begin(), split.polynomial(Radial(kind)).end(), polynomials[kind].begin());
+  std::array<std::vector<std::vector<Real>>, 2> records;
+  for (auto& level : records) level.resize(lists.bodies.size());
+  Eigen::Index most = 0;
+  for (const auto& body : lists.bodies) most = std::max(most, body.levels[0].points.cols());
+  parallel_for(static_cast<int>(lists.bodies.size()), [&](int j) {
+    const auto& levels = lists.bodies[std::size_t(j)].levels;
+    records[0][std::size_t(j)] = records_of<Real, dual>(levels[0], coarse[std::size_t(j)]);
+    records[1][std::size_t(j)] = records_of<Real, dual>(levels[1], fine[std::size_t(j)]);
+  });
+  std::vector<std::uint16_t> all(std::size_t(most) + unrolled);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<std::uint16_t>(k);
+  const PairLoop<Real> residual = loop_of<Real, dual, Part::residual>(split.degree()),
+                       smooth = loop_of<Real, dual, Part::smooth>(split.degree());
+  parallel_for(static_cast<int>(lists.groups.size()), [&](int g) {
+    const PairLists::Group& group = lists.groups[std::size_t(g)];
+    Points& u = velocity[std::size_t(g)];
+    for (const PairLists::Segment& s : group.segments) {
+      const std::span<const int> members = members_of(group.patches, s.patch);
+      const PairLists::Body& body = lists.bodies[std::size_t(s.body)];
+      const PatchLanes<Real> targets = lanes_of<Real>(group.points, members, body.centre);
+      LaneOf<Real> v[3] = {};
+      residual(polynomials, records[std::size_t(s.level)][std::size_t(s.body)].data(), &group.sources[s.first], s.count,
+               targets.x, v);
+      for (std::size_t l = 0; l < members.size(); ++l)
+        if (s.lanes >> l & 1)
+          for (int d = 0; d < 3; ++d) u(d, members[l]) += v[d][l];
+    }
+    for (const PairLists::Taken& taken : group.taken) {
+      const PairLists::Body& body = lists.bodies[std::size_t(taken.body)];
+      const std::vector<Real>& from = records[0][std::size_t(taken.body)];
+      const auto count = static_cast<int>(body.levels[0].points.cols());
+      const int whole = count / unrolled * unrolled;
+      // The rest of the points, and then the one of no strength.
+      std::uint16_t rest[unrolled];
+      for (int k = 0; k < unrolled; ++k) rest[k] = static_cast<std::uint16_t>(std::min(whole + k, count));
+      for (std::size_t first = 0; first < taken.targets.size(); first += lane_count<Real>) {
+        const std::span<const int> members(taken.targets.begin() + std::ptrdiff_t(first),
+                                           std::min<std::size_t>(lane_count<Real>, taken.targets.size() - first));
+        const PatchLanes<Real> targets = lanes_of<Real>(group.points, members, body.centre);
+        LaneOf<Real> v[3] = {};
+        smooth(polynomials, from.data(), all.data(), whole, targets.x, v);
+        if (whole < count) smooth(polynomials, from.data(), rest, unrolled, targets.x, v);
+        for (std::size_t l = 0; l < members.size(); ++l)
+          for (int d = 0; d < 3; ++d) u(d, members[l]) -= v[d][l];
+      }
+    }
+  });
+}
+
+}  // namespace
+
+void add_pairs(const PairLists& lists, const KernelSplit& split, std::span<const FastStrengths> coarse,
+               std::span<const FastStrengths> fine, std::vector<Points>& velocity) {
+  const bool dual = std::any_of(coarse.begin(), coarse.end(), [](const auto& s) { return s.dual.cols() > 0; });
+  if (lists.single_precision)
+    (dual ? add_all<float, true> : add_all<float, false>)(lists, split, coarse, fine, velocity);
+  else
+    (dual ? add_all<double, true> : add_all<double, false>)(lists, split, coarse, fine, velocity);
+}
+
+}  // namespace sim
