@@ -1,6 +1,7 @@
 #include "render/draw/draw.h"
 
 #include "render/core/assets.h"
+#include "render/core/paint.h"
 #include "render/core/places.h"
 #include "render/core/style.h"
 #include "render/draw/arrow_shape.h"
@@ -13,8 +14,7 @@
 namespace render {
 namespace {
 
-constexpr double longest_arrow = 0.21, arrow_thickness = 0.009;  // half heights of the picture
-constexpr double weakest_arrow = 0.10;                           // of the longest; shorter ones are left out
+constexpr double weakest_arrow = 0.10;  // of the longest; shorter ones are left out
 
 // The membranes as the picture shows them: points in half heights of the picture, dense enough for distances to them.
 std::vector<glm::dvec2> shadows(const Frame& frame) {
@@ -115,9 +115,7 @@ const Program& Renderer::program(const std::string& name, const std::string& def
   if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
   const std::string head = "#version 330 core\n" + defines;
   std::string library;
-  if (name == "body" || name == "arrow") library += shader_text("light.glsl", shader_dir_);
-  if (name == "ground" || name == "arrow") library += shader_text("ground.glsl", shader_dir_);
-  if (name == "body") library += shader_text("lines.glsl", shader_dir_);
+  for (const std::string& file : shader_libraries(name)) library += shader_text(file, shader_dir_);
   return programs_
       .try_emplace(key, context_.gl(), name, head + shader_text(name + ".vert", shader_dir_),
                    head + library + shader_text(name + ".frag", shader_dir_))
