@@ -20,7 +20,7 @@ inline constexpr std::array<std::string_view, 5> colour_by_names{"order", "visco
 struct ViewParameters {
   std::string camera = "flow-gradient";
   std::vector<std::string> views;  ///< several cameras in one frame; empty: the one above
-  std::string follow = "auto";     ///< auto: follow the centroid once the drift exceeds a few radii
+  std::string follow = "auto";     ///< auto: follow the centroid once it drifts by half the extent
   int follow_vesicle = 0;
   std::string projection = "perspective";
   double zoom = 1;   ///< 1: everything that happens in the movie fits, with room for captions
@@ -70,8 +70,8 @@ void visit(P& p, V&& v) {
     p.views);
   v(Parameter{.name = "follow",
               .unit = "",
-              .meaning =
-                  "move with the centroid of all, or with one vesicle; auto: when it drifts by more than a few radii",
+              .meaning = "move with the centroid of all, or with one vesicle; auto: when it drifts by more than half "
+                         "of what is seen at once",
               .choices = follow_names},
     p.follow);
   v(Parameter{.name = "follow_vesicle",
