@@ -30,7 +30,7 @@ struct ViewParameters {
   std::string style = "opaque";
   std::string field = "tension";
   std::optional<std::string> colour_map;
-  std::vector<double> field_range;  ///< lowest and highest; empty: over the whole movie
+  std::vector<double> field_range;  ///< lowest and highest; empty: of what is shown
   double opacity = 0.30;            ///< of a ghost's membrane seen straight on
   sim::Vec3 cut_normal = -sim::Vec3::UnitY();
   double cut_offset = 0;
@@ -115,11 +115,14 @@ void visit(P& p, V&& v) {
               .catalogue = "colour_maps",
               .when_absent = "viridis, or blue-red for fields with a sign"},
     p.colour_map);
-  v(Parameter{.name = "field_range",
-              .unit = "",
-              .meaning =
-                  "values at both ends of the colour bar; empty: all but the outermost 0.5 % of the whole movie"},
-    p.field_range);
+  v(
+      Parameter{
+          .name = "field_range",
+          .unit = "",
+          .meaning =
+              "values at both ends of the colour bar; empty: all but the outermost 0.5 % of what is shown, the whole "
+              "movie or movies side by side without what happens at their start alone, or the still"},
+      p.field_range);
   v(Parameter{.name = "opacity",
               .unit = "",
               .meaning = "of the membranes in the style ghost, seen straight on",

@@ -24,14 +24,6 @@ glm::vec3 eye_place(const Camera& camera, const glm::dvec3& point) {
   return camera.view * glm::vec4(glm::vec3(camera.place(point)), 1);
 }
 
-// From pole to pole of the label, so that the dots are as dense as on the bar. In half octaves: a camera that moves
-// does not shift them all the time.
-double sign_dot_rows(const Frame& frame, const Body& body) {
-  const double radius = body.mesh.area_radius / frame.camera.half_height * frame.view.size[1] / 2;  // px
-  const double wanted = std::numbers::pi * radius / sign_dot_spacing(frame.view.size[1]);
-  return std::max(4.0, std::round(std::exp2(std::round(2 * std::log2(wanted)) / 2)));
-}
-
 }  // namespace
 
 void Renderer::upload(const Body& body, const Camera& camera) {
@@ -59,7 +51,8 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
     bodies_.attribute(6, shares);
     palette_.bind();
     p.set("u_map", 0);
-    if (dotted) p.set("u_dot_rows", static_cast<float>(sign_dot_rows(frame, body)));
+    if (dotted)
+      p.set("u_dot_spacing", static_cast<float>(2 * sign_dot_spacing(frame.view.size[1]) / frame.view.size[1]));
   }
   if (style.cut) {
     glm::vec4 plane(0, 0, 0, -1);  // of nothing

@@ -225,8 +225,7 @@ class Scene {
       gl.bindTexture(gl.TEXTURE_2D, this.paint.map);
       set.whole("u_map", 0);
       const spacing = Math.max(page.paint.sign_dot_spacing * height / 1080, page.paint.sign_dot_least);
-      const wanted = Math.PI * vesicle.radius / matrices.unit * matrices.fit * height / 2 / spacing;
-      set.number("u_dot_rows", Math.max(4, Math.round(2 ** (Math.round(2 * Math.log2(wanted)) / 2))));
+      set.number("u_dot_spacing", 2 * spacing / height);
     }
     if (style.tracers) {
       const dots = new Float32Array(4 * Math.max(body.tracers.length, 1)).fill(-1);
