@@ -3,7 +3,8 @@
 
 Runs the commands that stand on the page, simulations first, in FOLDER (default: a temporary one), and compares what
 they draw with docs/pictures; with --update puts it there. Status 1 when a picture has changed. -k takes only the pictures
-whose name contains WORD. Look at the pictures before a change of them goes in.
+whose name contains WORD. Look at the pictures before a change of them goes in. Movies take a minute and depend on the
+version of ffmpeg: they are made with --update only, and otherwise their size is checked.
 """
 
 import argparse
@@ -31,6 +32,14 @@ def output_of(words):
     return words[words.index("-o") + 1]
 
 
+def movie_format(words):
+    """None for pictures."""
+    return words[words.index("--format") + 1] if "--format" in words else None
+
+
+MOST_BYTES = 2_000_000  # of a movie: a page that is slow to load is not read
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("program")
@@ -41,12 +50,19 @@ def main():
     program = str(Path(given.program).resolve())
     page = (ROOT / "docs" / "gallery.md").read_text()
     simulations, pictures = commands(page)
-    shown = set(re.findall(r"\]\(pictures/([\w-]+)\.png\)", page))
+    shown = set(re.findall(r"\]\(pictures/([\w-]+)\.(?:png|webp)\)", page))
     made = {Path(output_of(words)).stem for words in pictures}
     if shown != made:
         print("docs/gallery.md: pictures without a command, or commands without a picture:", ", ".join(sorted(shown ^ made)))
         return 1
     pictures = [words for words in pictures if given.word in Path(output_of(words)).stem]
+    for words in pictures:
+        if (kind := movie_format(words)) and not given.update:
+            kept = ROOT / "docs" / "pictures" / f"{Path(output_of(words)).name}.{kind}"
+            if not kept.exists() or kept.stat().st_size > MOST_BYTES:
+                print(f"{kept.relative_to(ROOT)} is missing, or larger than {MOST_BYTES} bytes")
+                return 1
+    pictures = [words for words in pictures if given.update or not movie_format(words)]
     needed = {word for words in pictures for word in words if word.endswith(".h5")}
 
     work = Path(given.work) if given.work else Path(tempfile.mkdtemp(prefix="gallery-"))
@@ -67,8 +83,11 @@ def main():
     changed = []
     for words in pictures:
         run(words)
-        name = Path(output_of(words)).stem + ".png"
+        kind = movie_format(words)
+        name = Path(output_of(words)).stem + (f".{kind}" if kind else ".png")
         drawn, kept = folder / name, ROOT / "docs" / "pictures" / name
+        if kind:
+            drawn = folder / Path(output_of(words)).name / f"movie.{kind}"
         if given.update:
             shutil.copyfile(drawn, kept)
             continue

@@ -28,20 +28,36 @@ uniform float u_contour_width; // samples, where the whole outline is drawn here
 in float v_scalar;
 uniform sampler2D u_map;  // 256 texels, sRGB
 #ifdef SIGN_DOTS
-uniform float u_dot_rows;  // from pole to pole
-// Dots evenly spread over the label, in rows of constant colatitude; `shown` 0..1 scales the dot.
+uniform float u_dot_spacing;  // half heights of the picture
+// Round dots, evenly spread over the membrane itself however it stretches the label. They stand on rows of constant
+// colatitude; where the membrane is stretched there are twice as many rows, or dots in a row. Every second one of those
+// grows with the stretch, so that nothing appears at once. `shown` 0..1 scales all.
 float sign_dot(LabelPoint p, float shown) {
-  float spacing = pi / u_dot_rows;
-  float row = clamp(floor(p.theta / spacing), 0.0, u_dot_rows - 1.0);
-  float theta = (row + 0.5) * spacing;
-  float count = max(floor(2.0 * u_dot_rows * sin(theta) + 0.5), 1.0);
-  float phase = fract(0.618034 * row);
-  float phi = (floor(atan(p.s.y, p.s.x) / (2.0 * pi) * count + phase) + 0.5 - phase) / count * 2.0 * pi;
+  const float rows = 4.0;  // where nothing is doubled
+  vec3 e_phi = vec3(-p.s.y, p.s.x, 0.0) / p.sine, dx = dFdx(v_eye), dy = dFdy(v_eye);
+  mat2 label = mat2(dot(p.du, p.e_theta), dot(p.du, e_phi), dot(p.dv, p.e_theta), dot(p.dv, e_phi));
+  float area = label[0].x * label[1].y - label[0].y * label[1].x;
+  area = abs(area) < 1e-12 ? 1e-12 : area;
+  // the membrane's tangents for a unit of the label
+  vec3 along_theta = (dx * label[1].y - dy * label[0].y) / area, along_phi = (dy * label[0].x - dx * label[1].x) / area;
+  float spacing = pi / rows, doubled = clamp(log2(length(along_theta) * spacing / u_dot_spacing), 0.0, 12.0);
+  float between = spacing / exp2(floor(doubled) + 1.0);
+  float row = clamp(floor(p.theta / between + 0.5), 0.0, floor(pi / between + 0.5));
+  float size = mod(row, 2.0) > 0.5 ? smoothstep(0.0, 0.7, fract(doubled)) : 1.0;
+  float theta = row * between, count = max(floor(2.0 * rows * sin(theta) + 0.5), 1.0);
+  float apart = length(along_phi) * 2.0 * pi * sin(theta) / count;
+  doubled = clamp(log2(max(apart, 1e-9) / u_dot_spacing), 0.0, 12.0);
+  count *= exp2(floor(doubled) + 1.0);
+  float phase = fract(9.42 * theta);
+  float number = floor((atan(p.s.y, p.s.x) / (2.0 * pi) - phase) * count + 0.5);
+  if (mod(number, 2.0) > 0.5) size *= theta < 0.5 * between || theta > pi - 0.5 * between ? 0.0 : smoothstep(0.0, 0.7, fract(doubled));
+  float phi = 2.0 * pi * (number / count + phase);
   vec3 away = p.s - vec3(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
-  float r = max(length(away), 1e-6);
-  float sample_size = max(length(vec2(dot(p.du, away), dot(p.dv, away))) / r, 1e-9);
-  float densest = spacing / max(length(p.du), length(p.dv));  // samples
-  return shown * smoothstep(2.5, 5.0, densest) * (1.0 - smoothstep(-0.6, 0.6, (r - DOT_RADIUS * shown * spacing) / sample_size));
+  vec3 to_dot = along_theta * dot(away, p.e_theta) + along_phi * dot(away, e_phi);
+  float r = max(length(to_dot), 1e-9);
+  float sample_size = max(length(vec2(dot(dx, to_dot), dot(dy, to_dot))) / r, 1e-9);
+  float densest = u_dot_spacing / max(length(dx), length(dy));  // samples
+  return shown * smoothstep(2.5, 5.0, densest) * (1.0 - smoothstep(-0.6, 0.6, (r - DOT_RADIUS * shown * size * u_dot_spacing) / sample_size)) * smoothstep(0.0, 0.2, size);
 }
 #endif
 #endif

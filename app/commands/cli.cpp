@@ -248,6 +248,8 @@ constexpr OptionRow option_rows[] = {
        app.add_option("--motion", o.motion,
                       "write a row per vesicle: its motion in shear, the period, means over it; - is standard output")
            ->type_name("FILE");
+       app.add_option("--html", o.html, "write a page that shows the trajectory in a browser, to turn and to play")
+           ->type_name("FILE");
        app.add_option("--vtk", o.vtk, "write XML PolyData and a .pvd series")->type_name("DIR");
        app.add_option("--ply", o.ply, "write a PLY mesh per saved state and vesicle")->type_name("DIR");
        app.add_option("--latitudes", o.latitudes, "of the meshes; twice as many longitudes")

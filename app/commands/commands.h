@@ -46,8 +46,10 @@ inline constexpr Command commands[] = {
     {"figure", "a figure as PNG, SVG and PDF, with its numbers as CSV", "NAME", "TRAJECTORY", true,
      "to-figure set-pictures quiet gl shader-dir figure-size theme font-size force-file", figure},
     {"info", "what a trajectory, a scene or a frame holds", "", "FILE", false, "set", info},
-    {"export", "saved states for other programs: a table of measures, meshes for ParaView (VTK) and Blender (PLY)", "",
-     "TRAJECTORY", false, "export state-time quiet force-file", export_states},
+    {"export",
+     "saved states for other programs: a table of measures, a page for browsers, meshes for ParaView (VTK) and Blender "
+     "(PLY)",
+     "", "TRAJECTORY", false, "export state-time set-pictures quiet force-file", export_states},
     {"compare", "pictures against expected ones, a pair of files or of folders: status 0 same, 1 different, 2 neither",
      "EXPECTED", "ACTUAL", false, "thresholds ignore json junit html diff update quiet", compare},
     {"reproduce", "recomputes a table or figure of the method's paper; without ITEM, tells which", "ITEM", "", false,

@@ -7,6 +7,7 @@
 #include "app/commands/commands.h"
 #include "app/export/csv.h"
 #include "app/export/mesh_export.h"
+#include "app/export/page.h"
 #include "app/export/reference.h"
 #include "app/export/summary.h"
 #include "app/pictures/frames.h"
@@ -59,11 +60,38 @@ std::pair<std::int64_t, std::int64_t> chosen_states(const sim::TrajectoryReader&
   return {nearest, nearest + 1};
 }
 
+/// False when it was interrupted.
+bool write_page(const Options& options, const sim::TrajectoryReader& trajectory, std::int64_t first, std::int64_t end,
+                ResultFiles& files) {
+  const Settings settings = scene_in(trajectory, options.inputs.front(), options.set);
+  if (first == end) throw std::runtime_error("the trajectory has no states");
+  const std::vector<double> times =
+      options.time ? std::vector{trajectory.time(first)} : page_times(trajectory, settings.movie);
+  Progress progress("exporting", options.quiet);
+  const std::string page = page_text(trajectory, settings, times, [&](std::int64_t k, std::int64_t count) {
+    progress.show(static_cast<double>(k) / static_cast<double>(count), fmt::format("frame {} of {}", k + 1, count));
+    return !interrupted();
+  });
+  progress.clear();
+  if (page.empty()) {
+    files.settle();
+    tell("interrupted");
+    return false;
+  }
+  files.write(options.html, page);
+  if (!options.quiet && options.html != "-")
+    fmt::print("{}: {} frames, {} kB\n", printable(options.html.string()), times.size(), page.size() / 1000);
+  return true;
+}
+
 }  // namespace
 
 int export_states(const Options& options) {
-  if (options.csv.empty() && options.motion.empty() && options.vtk.empty() && options.ply.empty())
-    throw std::runtime_error("say what to write: --csv FILE, --motion FILE, --vtk DIR or --ply DIR");
+  if (options.csv.empty() && options.motion.empty() && options.html.empty() && options.vtk.empty() &&
+      options.ply.empty())
+    throw std::runtime_error("say what to write: --csv FILE, --motion FILE, --html FILE, --vtk DIR or --ply DIR");
+  if (!options.set.empty() && options.html.empty())
+    throw std::runtime_error("--set changes the pictures of --html FILE; there are no others");
   if (options.csv == "-" && options.motion == "-")
     throw std::runtime_error("--csv and --motion cannot both go to standard output");
   if (!options.motion.empty() && options.time)
@@ -74,6 +102,7 @@ int export_states(const Options& options) {
   // Before the first of them is written.
   if (!options.csv.empty()) files.require(options.csv);
   if (!options.motion.empty()) files.require(options.motion);
+  if (!options.html.empty()) files.require(options.html);
   if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_series);
   for (std::int64_t k = first; k < end; ++k) {
     if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_name(k));
@@ -85,6 +114,7 @@ int export_states(const Options& options) {
     if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory, scene, first, end));
     if (!options.motion.empty()) files.write(options.motion, motion_csv(trajectory, scene));
   }
+  if (!options.html.empty() && !write_page(options, trajectory, first, end, files)) return interrupted_status;
   struct Kind {
     const std::filesystem::path& folder;
     std::int64_t (*write)(const sim::TrajectoryReader&, const MeshExport&, const sim::FileWriter&,

@@ -1,5 +1,6 @@
 #include "app/compare/compare_report.h"
 
+#include "app/base/markup.h"
 #include "app/base/printable.h"
 #include "app/base/version.h"
 #include "app/scene/output.h"
@@ -37,50 +38,7 @@ std::string measures(const Comparison& c) {
   return text;
 }
 
-/// Names of files may be any bytes: what is no text becomes a question mark, the rest is escaped by `special`, which
-/// answers nothing for characters that stay as they are.
-template <class F>
-std::string escaped(std::string_view text, F&& special) {
-  std::string result;
-  while (!text.empty()) {
-    const Character c = first_character(text);
-    const std::string replaced = c.length == 0 ? std::string("?") : special(c.code);
-    result += replaced.empty() ? std::string(text.substr(0, c.length)) : replaced;
-    text.remove_prefix(std::max<std::size_t>(c.length, 1));
-  }
-  return result;
-}
-
-std::string json_text(std::string_view text) {
-  return '"' +
-         escaped(text,
-                 [](char32_t c) -> std::string {
-                   if (c == '"' || c == '\\') return std::string("\\") + static_cast<char>(c);
-                   return is_control(c) ? fmt::format("\\u{:04x}", static_cast<std::uint32_t>(c)) : std::string();
-                 }) +
-         '"';
-}
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
-
-/// For XML and HTML, also inside quotes.
-std::string markup_text(std::string_view text) {
-  return escaped(text, [](char32_t c) -> std::string {
-    switch (c) {
-      case '&':
-        return "&amp;";
-      case '<':
-        return "&lt;";
-      case '>':
-        return "&gt;";
-      case '"':
-        return "&quot;";
-      case '\'':
-        return "&#39;";
-      default:
-        return is_control(c) ? "?" : std::string();
-    }
-  });
-}
 
 std::string figure(std::string_view role, std::string_view caption, std::string_view bytes) {
   return fmt::format(
@@ -292,25 +250,13 @@ void write_page(const CompareRequest& request, const std::vector<Comparison>& al
                                                                           request.rule.flip_spot}))))
       rule += fmt::format("<tr><td>{}</td><td>{:g}</td><td>{}</td></tr>\n", name, value, meaning);
   });
-  const std::pair<std::string_view, std::string> places[] = {{"{{totals}}", report_totals(all)},
-                                                             {"{{expected}}", markup_text(request.expected.string())},
-                                                             {"{{actual}}", markup_text(request.actual.string())},
-                                                             {"{{program}}", "tanktread " + version()},
-                                                             {"{{rule}}", rule},
-                                                             {"{{equal}}", equal},
-                                                             {"{{articles}}", articles}};
-  // One pass over the page alone: a name may well look like a place.
-  std::string page;
-  for (std::string_view rest = compare_page; !rest.empty();) {
-    const std::size_t at = std::min(rest.find("{{"), rest.size());
-    page += rest.substr(0, at);
-    rest.remove_prefix(at);
-    const auto* place =
-        std::find_if(std::begin(places), std::end(places), [&](const auto& p) { return rest.starts_with(p.first); });
-    const bool known = place != std::end(places);
-    page += known ? place->second : std::string(rest.substr(0, 1));
-    rest.remove_prefix(std::min(rest.size(), known ? place->first.size() : 1));
-  }
+  const std::string page = filled(compare_page, {{"totals", report_totals(all)},
+                                                 {"expected", markup_text(request.expected.string())},
+                                                 {"actual", markup_text(request.actual.string())},
+                                                 {"program", "tanktread " + version()},
+                                                 {"rule", rule},
+                                                 {"equal", equal},
+                                                 {"articles", articles}});
   write_into(request, all, folder, folder / "index.html", page);
 }
 

@@ -3,6 +3,7 @@
 #include "app/pictures/flow_picture.h"
 
 #include "render/core/places.h"
+#include "render/overlay/layout.h"
 #include "render/scene/arrow_net.h"
 #include "sim/membrane/flows.h"
 
@@ -40,9 +41,10 @@ FlowRequest request_of(sim::Plans& plans, const ViewPanel& p, const sim::State& 
   return request;
 }
 
-/// The parts of a line that are clear of the captions; heads: indices of its points.
+/// The parts of a line that are clear of what lies over the picture; heads: indices of its points.
 void add_clear_parts(const render::Streamline& line, const std::vector<Eigen::Index>& heads,
                      const render::CutPlane& plane, const render::Camera& camera,
+                     const std::vector<render::Box>& overlays, const std::vector<int>& size,
                      std::vector<render::FlowLines::Line>& parts) {
   render::FlowLines::Line part;
   const auto finish = [&] {
@@ -51,7 +53,7 @@ void add_clear_parts(const render::Streamline& line, const std::vector<Eigen::In
   };
   for (Eigen::Index k = 0; k < line.points.rows(); ++k) {
     const sim::Vec3 point = plane.origin + line.points(k, 0) * plane.right + line.points(k, 1) * plane.up;
-    if (render::clear_of_captions(camera.picture_place(render::to_glm(point))) < 0.5) {
+    if (render::clear_of(overlays, camera.picture_place(render::to_glm(point)), size) < 0.2) {
       finish();
       continue;
     }
@@ -76,13 +78,14 @@ render::FlowArrows arrows_of(const ViewPanel& p, const render::StateSummary& sum
 }
 
 render::FlowLines flow_lines_of(sim::Plans& plans, const ViewPanel& p, const sim::State& state,
-                                const render::Camera& camera) {
+                                const render::Camera& camera, const std::vector<render::Box>& overlays) {
   render::FlowLines all;
   if (p.view.streamlines == "off") return all;
   const FlowRequest request = request_of(plans, p, state, camera);
   const double between_heads = 7 * request.spacing;
   for (const render::Streamline& line : flow_picture(plans, p.source.settings.scene, state, request).lines)
-    add_clear_parts(line, render::arrow_places(line, between_heads), request.plane, camera, all.lines);
+    add_clear_parts(line, render::arrow_places(line, between_heads), request.plane, camera, overlays, p.view.size,
+                    all.lines);
   return all;
 }
 

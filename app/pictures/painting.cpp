@@ -98,35 +98,48 @@ std::pair<double, double> rounded(double low, double high, const FieldSize& size
   return {step * std::floor(low / step + 1e-9), step * std::ceil(high / step - 1e-9)};
 }
 
-const render::ColourMapRow& map_for(const render::ViewParameters& view, bool both_signs) {
-  return render::find_colour_map(view.colour_map.value_or(both_signs ? "blue-red" : "viridis"));
+/// Whatever the values: a field looks the same in every picture.
+const render::ColourMapRow& map_for(const render::ViewParameters& view, bool has_sign) {
+  return render::find_colour_map(view.colour_map.value_or(has_sign ? "blue-red" : "viridis"));
 }
 
-/// `values`: of the whole movie; empty when the range is given and only one picture is drawn. `shown`: of that picture.
-/// `end`: an automatic range ends there at the latest, unless all values are larger.
-void give_range(render::Legend& legend, const render::ViewParameters& view, std::vector<double>& values,
+/// Lowest and highest value, but for the outermost 0.5 %. Of no values 0 and 1.
+std::pair<double, double> extent_of(std::vector<double>& values) {
+  constexpr double outermost = 0.005;
+  if (values.empty()) return {0, 1};
+  return {quantile(values, outermost), quantile(values, 1 - outermost)};
+}
+
+/// `all` of the movie, or what follows its first tenth (`later`) where that has a much smaller extent: what happens at
+/// the start and never again does not set the range.
+std::pair<double, double> steady_extent(std::vector<double>& all, std::vector<double>& later) {
+  constexpr double much = 1.5;
+  const auto whole = extent_of(all);
+  if (later.empty()) return whole;
+  const auto rest = extent_of(later);
+  const auto reach = [](const std::pair<double, double>& e) {
+    return std::max({e.second - e.first, std::abs(e.first), std::abs(e.second)});
+  };
+  return reach(whole) > much * reach(rest) ? rest : whole;
+}
+
+/// extent: of what is shown, without outliers. `shown`: all values of the picture or the movie. `end`: an automatic
+/// range ends there at the latest, unless all values are larger.
+void give_range(render::Legend& legend, const render::ViewParameters& view, std::pair<double, double> extent,
                 const std::vector<double>& shown, bool has_sign, const FieldSize& size,
                 double end = std::numeric_limits<double>::infinity()) {
-  double low = 0, high = 1;
-  if (!values.empty()) {
-    constexpr double outermost = 0.005;
-    low = quantile(values, outermost);
-    high = quantile(values, 1 - outermost);
-    if (low < end) high = std::min(high, end);
-  }
-  if (!view.field_range.empty()) {
-    low = view.field_range[0];
-    high = view.field_range[1];
-  }
-  const bool both =
-      has_sign && low < -size.rounding && high > size.rounding && std::min(-low, high) > 0.3 * std::max(-low, high);
-  const render::ColourMapRow& map = map_for(view, both);
+  auto [low, high] = extent;
+  if (low < end) high = std::min(high, end);
+  const render::ColourMapRow& map = map_for(view, has_sign);
   if (view.field_range.empty()) {
-    if (map.kind == render::MapKind::diverging) {
+    if (map.kind == render::MapKind::diverging && has_sign) {
       high = std::max(std::abs(low), std::abs(high));
       low = -high;
     }
     std::tie(low, high) = rounded(low, high, size);
+  } else {
+    low = view.field_range[0];
+    high = view.field_range[1];
   }
   legend.low = low;
   legend.high = high;
@@ -163,8 +176,9 @@ void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& s
   legend.label = quantity.label;
   render::ViewParameters view = settings.view;
   view.field_range.clear();
-  std::vector<double> all = values;
-  give_range(legend, view, all, values, false, {});
+  give_range(legend, view,
+             {*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end())}, values,
+             false, {});
   legend.mirrored = false;  // whole bodies have one value each: no dots
   for (const double value : values)
     p.bodies.push_back(render::mapped(legend.colours, (value - legend.low) / (legend.high - legend.low)));
@@ -190,21 +204,31 @@ Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vecto
   p.field = &sim::find_field(view.field);
   if (p.field->needs_neighbours && first.vesicles.size() < 2)
     throw std::invalid_argument(fmt::format("the field '{}' needs two vesicles or more", p.field->name));
-  std::vector<double> values, of_still;
+  std::vector<double> values, later;  // of what is shown, and of that after the start
   sim::Plans plans;
   const auto add = [&](const sim::State& state, std::vector<double>& to) {
     sim::Surroundings surroundings;
     for (std::size_t v = 0; v < state.vesicles.size(); ++v)
       collect(painted_field(plans, p, settings, state, v, surroundings), to);
   };
-  if (still) add(*still, of_still);
-  if (!still || view.field_range.empty())
-    for (const std::int64_t k : states) add(trajectory.state(k), values);
+  if (still) {
+    add(*still, values);
+  } else if (!states.empty()) {
+    const double start = trajectory.time(states.front()), end = trajectory.time(states.back());
+    for (const std::int64_t k : states) {
+      const sim::State state = trajectory.state(k);
+      const std::size_t before = values.size();
+      add(state, values);
+      if (state.time >= start + 0.1 * (end - start) && states.size() >= 20)
+        later.insert(later.end(), values.begin() + static_cast<std::ptrdiff_t>(before), values.end());
+    }
+  }
   const NaturalScales scales = natural_scales(settings.scene, first, area_radius);
   const double unit = scale_of(p, settings.scene.vesicles.front().bending_modulus);
   p.legend.emplace();
   p.legend->label = label_of(p, settings.scene);
-  give_range(*p.legend, view, values, std::vector(still ? of_still : values), p.field->has_sign,
+  const std::vector<double> shown = values;  // quantiles reorder
+  give_range(*p.legend, view, steady_extent(values, later), shown, p.field->has_sign,
              {unit * scales.size_of(p.field->scale), unit * scales.rounding_of(p.field->scale)},
              p.field->automatic_end);
   return p;

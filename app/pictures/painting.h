@@ -19,10 +19,11 @@ struct Painting {
   double rate = 0;                       ///< of the flow at the size of a vesicle; 0: none
 };
 
-/// Passes over `states` of the trajectory when the style shows a field. An automatic range covers all but the lowest
-/// and the highest 0.5 % of the membranes' area, widened to round numbers; a field with both signs has zero in the
-/// middle. The colour bar shows whether values lie outside the range: of the movie, or of the `still` when only that
-/// is drawn. Throws std::invalid_argument for a field that this scene does not have.
+/// Passes over `states` of the trajectory when the style shows a field, or takes the `still` when only that is drawn.
+/// An automatic range covers all of it but the lowest and the highest 0.5 % of the membranes' area, and of a movie not
+/// what happens in its first tenth alone, widened to round numbers; a field that has a sign has zero in the middle,
+/// whatever its values. The colour bar shows whether values lie outside the range. Throws std::invalid_argument for a
+/// field that this scene does not have.
 Painting plan_painting(const sim::TrajectoryReader&, const std::vector<std::int64_t>& states, const Settings&,
                        double area_radius, const sim::State* still = nullptr);
 

@@ -4,6 +4,7 @@
 #include "app/pictures/overlays.h"
 
 #include "render/core/style.h"
+#include "render/overlay/layout.h"
 #include "render/overlay/panels.h"
 #include "render/scene/cutaway.h"
 #include "sim/measures/diagnostics.h"
@@ -41,10 +42,10 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   frame.bodies = bodies_of(studio, p, state);
   frame.legend = p.painting.legend;
   frame.arrows = arrows_of(p, summary);
-  frame.flow_lines = flow_lines_of(studio.plans, p, state, frame.camera);
   if (p.view.flow_profile) frame.profile = profile_of(p, frame.camera, state.time);
   if (p.view.inset) frame.inset = inset_of(p, state, frame.camera, moment.centre);
   frame.captions = captions_of(p, state.time);
+  frame.flow_lines = flow_lines_of(studio.plans, p, state, frame.camera, render::lay_out(frame, studio.font).boxes());
   return frame;
 }
 

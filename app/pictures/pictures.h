@@ -15,6 +15,7 @@ struct Studio {
   render::Renderer renderer;
   std::shared_ptr<const render::MeshPlan> mesh;
   sim::Plans plans;
+  render::Font font = render::Font();
   Studio(const render::GlChoice&, const std::filesystem::path& shader_dir, int picture_height);
 };
 

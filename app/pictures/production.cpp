@@ -78,13 +78,36 @@ Production arranged(const render::ViewParameters& first, std::size_t sources, st
   return production;
 }
 
-/// The view with what all frames of the panel share: framing, room of the inset, speed of the longest arrow.
-ViewPanel make_panel(const PictureSource& source, const render::ViewParameters& view, const SourceMeasures& m) {
+/// The view with its framing and captions.
+ViewPanel framed_panel(const PictureSource& source, const render::ViewParameters& view, const SourceMeasures& m) {
   ViewPanel p{.source = source, .view = view};
   p.framing = render::frame_trajectory(m.summaries, view, source.settings.key_frames);
   p.captions = m.captions;
   p.painting = m.painting;
   p.laid = m.laid;
+  return p;
+}
+
+/// Panels of one camera show lengths alike, in area radii of their own vesicles: none is larger than the widest allows.
+/// Placed eyes and zooms of the scenes stay.
+void share_scale(const std::vector<ViewPanel*>& panels) {
+  const auto of_zoom_one = [](const ViewPanel& p) {
+    return p.framing.half_height * p.view.zoom / p.captions.scale_length;
+  };
+  double widest = 0;
+  for (const ViewPanel* p : panels)
+    if (!p->framing.placed) widest = std::max(widest, of_zoom_one(*p));
+  for (ViewPanel* p : panels) {
+    if (p->framing.placed) continue;
+    const double factor = widest / of_zoom_one(*p);
+    p->framing.half_height *= factor;
+    p->framing.distance *= factor;
+  }
+}
+
+/// What else all frames of the panel share: room of the inset, speed of the longest arrow.
+void complete(ViewPanel& p, const SourceMeasures& m) {
+  const PictureSource& source = p.source;
   render::check_framing(p.framing, m.summaries);
   frame_inset(p, m.summaries);
   for (const render::StateSummary& summary : m.summaries) {
@@ -92,14 +115,13 @@ ViewPanel make_panel(const PictureSource& source, const render::ViewParameters& 
     if (arrows.velocities.rows() > 0)
       p.arrow_speed = std::max(p.arrow_speed, arrows.velocities.rowwise().norm().maxCoeff());
   }
-  if (view.errors) p.steps = source.trajectory.steps();
+  if (p.view.errors) p.steps = source.trajectory.steps();
   const render::MovieParameters& movie = source.settings.movie;
   const double per_frame = time_of_frame(source.trajectory, movie);
   const std::int64_t states = source.trajectory.count();
   constexpr double notice = 1.2;  // seconds of the movie
   p.notice = notice * movie.frame_rate * per_frame;
   p.time_format = time_format(source.settings.scene, per_frame, states > 0 ? source.trajectory.time(states - 1) : 0);
-  return p;
 }
 
 }  // namespace
@@ -125,10 +147,17 @@ Production prepare_pictures(const std::vector<PictureSource>& sources, std::opti
       view.camera = cameras[c];
       view.colour_bar = view.colour_bar && last;
       if (several) view.caption = view.caption && c == 0;
-      ViewPanel& panel = production.panels.emplace_back(make_panel(sources[k], view, measures[k]));
+      ViewPanel& panel = production.panels.emplace_back(framed_panel(sources[k], view, measures[k]));
       if (several) panel.captions.panel = cameras[c];
       panel.stamped = c == 0;
     }
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    std::vector<ViewPanel*> alike;
+    for (std::size_t k = 0; k < sources.size(); ++k) alike.push_back(&production.panels[k * cameras.size() + c]);
+    share_scale(alike);
+  }
+  for (std::size_t k = 0; k < production.panels.size(); ++k)
+    complete(production.panels[k], measures[k / cameras.size()]);
   return production;
 }
 

@@ -20,7 +20,7 @@ inline constexpr std::array<std::string_view, 5> colour_by_names{"order", "visco
 struct ViewParameters {
   std::string camera = "flow-gradient";
   std::vector<std::string> views;  ///< several cameras in one frame; empty: the one above
-  std::string follow = "auto";     ///< auto: follow the centroid once the drift exceeds a few radii
+  std::string follow = "auto";     ///< auto: follow the centroid once it drifts by half the extent
   int follow_vesicle = 0;
   std::string projection = "perspective";
   double zoom = 1;   ///< 1: everything that happens in the movie fits, with room for captions
@@ -30,7 +30,7 @@ struct ViewParameters {
   std::string style = "opaque";
   std::string field = "tension";
   std::optional<std::string> colour_map;
-  std::vector<double> field_range;  ///< lowest and highest; empty: over the whole movie
+  std::vector<double> field_range;  ///< lowest and highest; empty: of what is shown
   double opacity = 0.30;            ///< of a ghost's membrane seen straight on
   sim::Vec3 cut_normal = -sim::Vec3::UnitY();
   double cut_offset = 0;
@@ -70,8 +70,8 @@ void visit(P& p, V&& v) {
     p.views);
   v(Parameter{.name = "follow",
               .unit = "",
-              .meaning =
-                  "move with the centroid of all, or with one vesicle; auto: when it drifts by more than a few radii",
+              .meaning = "move with the centroid of all, or with one vesicle; auto: when it drifts by more than half "
+                         "of what is seen at once",
               .choices = follow_names},
     p.follow);
   v(Parameter{.name = "follow_vesicle",
@@ -115,11 +115,14 @@ void visit(P& p, V&& v) {
               .catalogue = "colour_maps",
               .when_absent = "viridis, or blue-red for fields with a sign"},
     p.colour_map);
-  v(Parameter{.name = "field_range",
-              .unit = "",
-              .meaning =
-                  "values at both ends of the colour bar; empty: all but the outermost 0.5 % of the whole movie"},
-    p.field_range);
+  v(
+      Parameter{
+          .name = "field_range",
+          .unit = "",
+          .meaning =
+              "values at both ends of the colour bar; empty: all but the outermost 0.5 % of what is shown, the whole "
+              "movie or movies side by side without what happens at their start alone, or the still"},
+      p.field_range);
   v(Parameter{.name = "opacity",
               .unit = "",
               .meaning = "of the membranes in the style ghost, seen straight on",

@@ -1,5 +1,5 @@
-// Places of a picture: how large captions and the other overlays are, what each of them covers, and what is left for
-// bodies. A place is a pair -1..1, from left to right and from bottom to top, as Camera::picture_place() gives it.
+// Places of a picture: how large captions and the other overlays are, and what is left for bodies. A place is a pair
+// -1..1, from left to right and from bottom to top, as Camera::picture_place() gives it.
 #pragma once
 
 #include "render/core/vectors.h"
@@ -8,6 +8,7 @@ namespace render {
 
 /// Share of the picture that bodies may take; captions get the rest.
 inline constexpr double bodies_width = 0.86, bodies_height = 0.74;
+inline constexpr double bodies_width_beside_profile = 0.74;
 
 /// Lengths of captions and annotations, px.
 struct OverlaySizes {
@@ -26,14 +27,17 @@ inline constexpr double colour_bar_top = 0.295, colour_bar_height = 0.44;
 /// far above and below the middle, as a share of half the picture's height.
 inline constexpr double profile_width = 0.085, profile_reach = 0.62;
 
-/// What lies over a picture besides its captions.
-enum class Overlay { colour_bar, triad, inset, profile, title, panel };
+/// Of a picture, pixels, y downward.
+struct Box {
+  double left = 0, top = 0, right = 0, bottom = 0;
+  double width() const { return right - left; }
+  double height() const { return bottom - top; }
+};
+/// They have no point in common.
+bool apart(const Box& a, const Box& b);
 
-/// Whether arrows at `place` are clear of the overlay: 0 where it stands, 1 elsewhere, smooth in between. aspect: the
-/// picture's width / height.
-double clear_of(Overlay overlay, const glm::dvec2& place, double aspect);
-
-/// 0 under the time, the parameters and the scale bar, 1 elsewhere, smooth in between.
+/// 0 where time, parameters and scale bar usually are, 1 elsewhere, smooth in between: for what is laid before the
+/// texts are known.
 double clear_of_captions(const glm::dvec2& place);
 
 }  // namespace render

@@ -1,10 +1,12 @@
 #include "render/draw/draw.h"
 
 #include "render/core/assets.h"
+#include "render/core/paint.h"
 #include "render/core/places.h"
 #include "render/core/style.h"
 #include "render/draw/arrow_shape.h"
 #include "render/draw/draw_values.h"
+#include "render/overlay/layout.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +15,7 @@
 namespace render {
 namespace {
 
-constexpr double longest_arrow = 0.21, arrow_thickness = 0.009;  // half heights of the picture
-constexpr double weakest_arrow = 0.10;                           // of the longest; shorter ones are left out
+constexpr double weakest_arrow = 0.10;  // of the longest; shorter ones are left out
 
 // The membranes as the picture shows them: points in half heights of the picture, dense enough for distances to them.
 std::vector<glm::dvec2> shadows(const Frame& frame) {
@@ -44,24 +45,6 @@ double clear_of_bodies(const std::vector<glm::dvec2>& shadows, const glm::dvec2&
     nearest2 = std::min(nearest2, glm::dot(away, away));
   }
   return glm::smoothstep(near, far, std::sqrt(nearest2));
-}
-
-// 0 where an overlay of the frame stands, captions aside, 1 elsewhere, smooth in between; place as
-// Camera::picture_place() gives it.
-double clear_of_overlays(const Frame& frame, const glm::dvec2& place) {
-  const ViewParameters& view = frame.view;
-  const double aspect = frame.camera.half_width / frame.camera.half_height;
-  double clear = 1;
-  const auto keep = [&](bool shown, Overlay overlay) {
-    if (shown) clear = std::min(clear, clear_of(overlay, place, aspect));
-  };
-  keep(frame.legend && view.colour_bar, Overlay::colour_bar);
-  keep(view.triad, Overlay::triad);
-  keep(frame.inset && view.inset, Overlay::inset);
-  keep(frame.profile && view.flow_profile, Overlay::profile);
-  keep(!frame.captions.title.empty(), Overlay::title);
-  keep(!frame.captions.panel.empty(), Overlay::panel);
-  return clear;
 }
 
 void check(const ViewParameters& view) {
@@ -115,9 +98,7 @@ const Program& Renderer::program(const std::string& name, const std::string& def
   if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
   const std::string head = "#version 330 core\n" + defines;
   std::string library;
-  if (name == "body" || name == "arrow") library += shader_text("light.glsl", shader_dir_);
-  if (name == "ground" || name == "arrow") library += shader_text("ground.glsl", shader_dir_);
-  if (name == "body") library += shader_text("lines.glsl", shader_dir_);
+  for (const std::string& file : shader_libraries(name)) library += shader_text(file, shader_dir_);
   return programs_
       .try_emplace(key, context_.gl(), name, head + shader_text(name + ".vert", shader_dir_),
                    head + library + shader_text(name + ".frag", shader_dir_))
@@ -171,16 +152,20 @@ void Renderer::draw_arrows(const Frame& frame) {
   const auto place_of = [&](const glm::dvec3& point) {
     return camera.picture_place(point) * glm::dvec2(camera.half_width / camera.half_height, 1);
   };
+  const std::vector<Box> overlays = lay_out(frame, font_).boxes();
   std::vector<glm::vec4> starts;
   std::vector<glm::vec3> vectors;
   for (Eigen::Index i = 0; i < flow.points.rows(); ++i) {
     const glm::dvec3 v = rests ? glm::dvec3(0) : to_glm(flow.velocities.row(i)) / fastest;
     const glm::dvec3 middle = to_glm(flow.points.row(i)), arrow = v * longest_arrow * camera.half_height;
     if (!rests && !(glm::length(v) >= weakest_arrow)) continue;
-    double beside = clear_of_overlays(frame, camera.picture_place(middle));
+    // Both ends and the middle: a long arrow reaches over a narrow overlay.
+    double beside = 1;
+    for (const double share : {-0.5, 0.0, 0.5})
+      beside = std::min(beside, clear_of(overlays, camera.picture_place(middle + share * arrow), frame.view.size));
     if (!camera.follows) beside = beside > 0.6;  // arrows at rest are there or not: a faint one looks like a flaw
-    const double shown = flow.shown * clear_of_captions(camera.picture_place(middle)) * beside *
-                         clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
+    const double shown =
+        flow.shown * beside * clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
     if (shown <= 0) continue;
     starts.emplace_back(glm::vec3(camera.place(middle)), shown);
     vectors.emplace_back(arrow / camera.half_height);

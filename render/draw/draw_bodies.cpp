@@ -12,13 +12,6 @@
 namespace render {
 namespace {
 
-constexpr double tracer_radius = 0.088;  // area radii
-constexpr double edge_step = 1.0 / 3;    // samples between the hulls of an outline
-
-Colour outline_colour(const Body& body) {
-  return {0.10 + 0.08 * body.colour.r, 0.11 + 0.08 * body.colour.g, 0.14 + 0.08 * body.colour.b};
-}
-
 // Single precision holds these whatever the unit of the scene.
 std::vector<glm::vec3> places(const Mesh& mesh, const Camera& camera) {
   std::vector<glm::vec3> all;
@@ -29,14 +22,6 @@ std::vector<glm::vec3> places(const Mesh& mesh, const Camera& camera) {
 
 glm::vec3 eye_place(const Camera& camera, const glm::dvec3& point) {
   return camera.view * glm::vec4(glm::vec3(camera.place(point)), 1);
-}
-
-// From pole to pole of the label, so that the dots are as dense as on the bar. In half octaves: a camera that moves
-// does not shift them all the time.
-double sign_dot_rows(const Frame& frame, const Body& body) {
-  const double radius = body.mesh.area_radius / frame.camera.half_height * frame.view.size[1] / 2;  // px
-  const double wanted = std::numbers::pi * radius / sign_dot_spacing(frame.view.size[1]);
-  return std::max(4.0, std::round(std::exp2(std::round(2 * std::log2(wanted)) / 2)));
 }
 
 }  // namespace
@@ -66,7 +51,8 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
     bodies_.attribute(6, shares);
     palette_.bind();
     p.set("u_map", 0);
-    if (dotted) p.set("u_dot_rows", static_cast<float>(sign_dot_rows(frame, body)));
+    if (dotted)
+      p.set("u_dot_spacing", static_cast<float>(2 * sign_dot_spacing(frame.view.size[1]) / frame.view.size[1]));
   }
   if (style.cut) {
     glm::vec4 plane(0, 0, 0, -1);  // of nothing
@@ -76,8 +62,8 @@ void Renderer::draw_body(const Frame& frame, const Body& body) {
   }
   const glm::vec3 colour = linear(style.own_colour ? body.colour : white);
   p.set("u_colour", colour);
-  p.set("u_line_colour", 0.07F * colour + glm::vec3(0.010F, 0.012F, 0.018F));
-  p.set("u_contour", vector_of(outline_colour(body)));
+  p.set("u_line_colour", line_colour(colour));
+  p.set("u_contour", vector_of(outline_colour(body.colour)));
   p.set("u_half_width", samples(frame.view, frame.view.line_width / 2, 0.42));
   if (style.tracers && frame.view.tracers && !tracers.empty()) {
     std::vector<glm::vec4> dots;
@@ -105,7 +91,7 @@ void Renderer::draw_outline(const Frame& frame, const Body& body, const std::vec
   const Program& p = program("outline", "");
   p.use();
   set_camera(p, frame.camera);
-  p.set("u_colour", vector_of(outline_colour(body)));
+  p.set("u_colour", vector_of(outline_colour(body.colour)));
   hulls_.attribute(0, places(body.mesh, frame.camera));
   hulls_.attribute(1, body.mesh.normal);
   hulls_.indices(rim);
@@ -158,8 +144,8 @@ void Renderer::draw_ghosts(const Frame& frame) {
   const Program& p = program("body", body_defines(style, frame.view, tracers));
   p.use();
   set_camera(p, frame.camera);
-  p.set("u_line_colour", glm::vec3(0.010F, 0.012F, 0.018F));
-  p.set("u_contour", glm::vec3(0.10F, 0.11F, 0.14F));
+  p.set("u_line_colour", line_ink);
+  p.set("u_contour", outline_ink);
   p.set("u_contour_width", samples(frame.view, frame.view.outline_width, 1.0));
   p.set("u_half_width", samples(frame.view, frame.view.line_width / 2, 0.42));
   p.set("u_opacity", static_cast<float>(frame.view.opacity));
@@ -266,7 +252,7 @@ void Renderer::draw_cut_edges(const Frame& frame) {
   for (const Body& body : frame.bodies) {
     if (!body.cut) continue;
     p.set("u_colour", vector_of({0.5 + 0.5 * body.colour.r, 0.5 + 0.5 * body.colour.g, 0.5 + 0.5 * body.colour.b}));
-    p.set("u_rim", vector_of(outline_colour(body)));
+    p.set("u_rim", vector_of(outline_colour(body.colour)));
     for (const std::vector<glm::dvec3>& edge : body.cut->edges) {
       draw_ribbon(frame.camera, edge, true, half_width + 1, 0.004 * body.mesh.area_radius);
     }

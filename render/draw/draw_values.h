@@ -1,6 +1,7 @@
 // Helpers shared by all passes of a frame.
 #pragma once
 
+#include "render/core/paint.h"
 #include "render/gl/gpu.h"
 #include "render/scene/frame.h"
 
@@ -8,13 +9,6 @@
 #include <cmath>
 
 namespace render {
-
-inline glm::vec3 vector_of(const Colour& c) { return {c.r, c.g, c.b}; }
-
-inline glm::vec3 linear(const Colour& c) {
-  const auto decode = [](double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); };
-  return {decode(c.r), decode(c.g), decode(c.b)};
-}
 
 // px at a height of 1080 in samples of this picture, at least `least` px wide however small it is.
 inline float samples(const ViewParameters& view, double px, double least) {

@@ -54,10 +54,10 @@ void seen_end_on(cairo_t* cairo, glm::dvec2 at, bool toward, double line) {
 
 }  // namespace
 
-void draw_triad(Image& image, const Font& font, const Camera& camera) {
+void draw_triad(Image& image, const Font& font, const Camera& camera, const Box& box, double length) {
   const AnnotationSizes s = annotation_sizes(image);
-  const double length = 62 * s.unit, room = length + 1.6 * s.text;
-  const glm::dvec2 origin(image.width - s.margin - room, image.height - s.margin - room);
+  const double room = box.width() / 2;
+  const glm::dvec2 origin((box.left + box.right) / 2, (box.top + box.bottom) / 2);
   const glm::dmat3 turn(camera.view);
   draw_on(image,
           {static_cast<int>(origin.x - room), static_cast<int>(origin.y - room), static_cast<int>(2.6 * room),
@@ -85,7 +85,9 @@ void draw_triad(Image& image, const Font& font, const Camera& camera) {
           });
 }
 
-void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profile) {
+void draw_flow_profile(Image& image, const Font& font, const FlowProfile& whole, double reach) {
+  FlowProfile profile = whole;
+  std::erase_if(profile.points, [&](const glm::dvec2& p) { return std::abs(p.x) > reach * (1 + 1e-9); });
   const AnnotationSizes s = annotation_sizes(image);
   double fastest = profile.reference_speed;
   for (const glm::dvec2& p : profile.points) fastest = std::max(fastest, std::abs(p.y));
@@ -96,7 +98,7 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profil
     most = std::max(most, p.y / fastest);
   }
   const double width = profile_width * image.width, scale = width / std::max(most - least, 0.5);
-  const double axis = s.margin - scale * least;
+  const double axis = std::min(s.margin, image.width / 12.0) - scale * least;
   const auto place = [&](const glm::dvec2& p) {
     return glm::dvec2(axis + scale * p.y / fastest, image.height * (0.5 - 0.5 * p.x));
   };
@@ -123,10 +125,9 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profil
           });
 }
 
-void draw_inset(Image& image, const Font& font, const Inset& inset) {
+void draw_inset(Image& image, const Font& font, const Inset& inset, const Box& box) {
   const AnnotationSizes s = annotation_sizes(image);
-  const double height = inset_height * image.height, width = inset_aspect * height, inner = 0.5 * s.margin;
-  const double left = image.width - inner - width, top = inner;
+  const double left = box.left, top = box.top, width = box.width(), height = box.height();
   const double scale = 0.5 * height / inset.half_height;
   const glm::dvec2 middle(left + 0.5 * width, top + 0.5 * height);
   const auto place = [&](const glm::dvec2& p) {

@@ -1,6 +1,7 @@
 // The colour bar at the right edge of a picture.
 #pragma once
 
+#include "render/core/places.h"
 #include "render/image/picture_canvas.h"
 #include "render/scene/frame.h"
 
@@ -9,12 +10,13 @@ namespace render {
 /// Three to seven round numbers in [low, high].
 std::vector<double> bar_ticks(double low, double high);
 
-/// Place of the bar in a picture: its colours from bottom to top, without the pointed ends. Pixels.
-struct BarPlace {
-  double left, top, width, height;
+/// Lengths of a colour bar, px: of the colours, from them to the numbers.
+struct BarSizes {
+  double width, text, tick, gap;
 };
-BarPlace colour_bar_place(const Image& image, const Font& font, const Legend& legend);
+BarSizes bar_sizes(int picture_height);
 
-void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool sign_dots = false);
+/// bar: its colours from bottom to top, without the pointed ends; whole pixels.
+void draw_colour_bar(Image& image, const Font& font, const Legend& legend, const Box& bar, bool sign_dots = false);
 
 }  // namespace render

@@ -4,6 +4,7 @@
 #include "render/image/picture_canvas.h"
 #include "render/overlay/annotation.h"
 #include "render/overlay/colour_bar.h"
+#include "render/overlay/layout.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,108 +13,58 @@ namespace render {
 
 namespace {
 
-// What of the captions in the upper left corner is shown.
-struct Shown {
-  bool time, parameters, errors;
-};
-Shown shown_captions(const Frame& frame) {
-  return {.time = frame.view.time_stamp && !frame.captions.time.empty(),
-          .parameters = frame.view.caption && !frame.captions.parameters.empty(),
-          .errors = frame.view.errors && !frame.captions.errors.empty()};
+Colour colour_of(TextPlace::Role role) {
+  switch (role) {
+    case TextPlace::Role::time:
+    case TextPlace::Role::title:
+      return ink;
+    case TextPlace::Role::note:
+      return note_ink;
+    default:
+      return soft_ink;
+  }
 }
 
-// Time, parameters, errors and note, below each other.
-void draw_corner(Image& image, const Font& font, const Frame& frame) {
-  const Captions& captions = frame.captions;
-  const Shown shown = shown_captions(frame);
-  if (!shown.time && !shown.parameters && !shown.errors && captions.note.empty()) return;
-  const OverlaySizes s = overlay_sizes(image.height);
-  const double line = 1.7 * s.small, height = s.margin + 1.2 * s.large + (shown.errors ? 3 : 2) * line;
-  draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(height))}, [&](cairo_t* cairo) {
-    double y = s.margin + 0.76 * s.large;
-    if (shown.time) {
-      set_colour(cairo, ink);
-      draw_text_on_picture(cairo, font, s.large, s.margin, y, captions.time);
-      y += 0.35 * s.large + s.small;
-    }
-    if (shown.parameters) {
-      set_colour(cairo, soft_ink);
-      draw_text_on_picture(cairo, font, s.small, s.margin, y, captions.parameters);
-      y += line;
-    }
-    if (shown.errors) {
-      set_colour(cairo, soft_ink);
-      draw_text_on_picture(cairo, font, s.small, s.margin, y, captions.errors);
-      y += line;
-    }
-    if (!captions.note.empty()) {
-      set_colour(cairo, note_ink);
-      draw_text_on_picture(cairo, font, s.small, s.margin, std::max(y, s.margin + 0.76 * s.large), captions.note);
-    }
-  });
+void draw_line(Image& image, const Font& font, const TextPlace& line) {
+  const Box& box = line.box;
+  const double around = line.size;  // letters with a tail, and the rim of the text
+  draw_on(image,
+          {static_cast<int>(box.left - around), static_cast<int>(box.top - around),
+           static_cast<int>(box.width() + 2 * around) + 1, static_cast<int>(box.height() + 2 * around) + 1},
+          [&](cairo_t* cairo) {
+            set_colour(cairo, colour_of(line.role));
+            draw_text_on_picture(cairo, font, line.size, box.left, box.bottom - 0.24 * line.size, line.text);
+          });
 }
 
-// In the middle of the upper edge, as large as fits beside the time and the parameters.
-void draw_title(Image& image, const Font& font, const Frame& frame) {
-  const Captions& captions = frame.captions;
-  if (captions.title.empty()) return;
-  const Shown shown = shown_captions(frame);
+// In the lower left corner.
+void draw_scale_bar(Image& image, const Font& font, const Captions& captions, const OverlayLayout& layout) {
+  if (!layout.scale_bar) return;
   const OverlaySizes s = overlay_sizes(image.height);
-  const double top = s.margin + 0.76 * s.large;
-  draw_on(image, {0, 0, image.width, static_cast<int>(std::ceil(top + s.large))}, [&](cairo_t* cairo) {
-    set_colour(cairo, ink);
-    const double aside = std::max(text_width(cairo, font, s.large, captions.time) * shown.time,
-                                  text_width(cairo, font, s.small, captions.parameters) * shown.parameters);
-    const double room = image.width - 2 * (s.margin + aside + s.large);
-    const double width = text_width(cairo, font, s.large, captions.title);
-    const double size = width > room && room > 0 ? std::max(s.large * room / width, s.small) : s.large;
-    draw_text_on_picture(cairo, font, size, image.width / 2.0, top, captions.title, Align::centre);
-  });
-}
-
-// The name of the panel, in the middle of the lower edge.
-void draw_panel_name(Image& image, const Font& font, const std::string& name) {
-  if (name.empty()) return;
-  const OverlaySizes s = overlay_sizes(image.height);
-  const int top = static_cast<int>(image.height - s.margin - 2 * s.small),
-            height = static_cast<int>(s.margin + 2 * s.small);
-  draw_on(image, {0, top, image.width, height}, [&](cairo_t* cairo) {
-    set_colour(cairo, soft_ink);
-    draw_text_on_picture(cairo, font, s.small, image.width / 2.0, image.height - s.margin, name, Align::centre);
-  });
-}
-
-// In the lower left corner; none that is too short to be seen or too long for the picture.
-void draw_scale_bar(Image& image, const Font& font, const Captions& captions, const Camera& camera) {
-  if (!(captions.scale_length > 0)) return;
-  const OverlaySizes s = overlay_sizes(image.height);
-  const double length = captions.scale_length / camera.half_width * image.width / 2;
-  const double thickness = std::max(4 * s.unit, 1.5), baseline = image.height - s.margin;
-  if (!(length > 2 * thickness && length < 0.6 * image.width)) return;
-  const int top = static_cast<int>(baseline - 2.2 * s.small),
+  const Box& box = *layout.scale_bar;
+  const double middle = (box.left + box.right) / 2, thickness = std::max(4 * s.unit, 1.5);
+  const int top = static_cast<int>(box.bottom - 2.2 * s.small),
             height = static_cast<int>(std::ceil(2.2 * s.small + s.margin));
   draw_on(image, {0, top, image.width, height}, [&](cairo_t* cairo) {
     set_colour(cairo, ink);
-    cairo_rectangle(cairo, s.margin, baseline - thickness, length, thickness);
+    cairo_rectangle(cairo, middle - layout.scale_length / 2, box.bottom - thickness, layout.scale_length, thickness);
     cairo_fill(cairo);
-    draw_text_on_picture(cairo, font, s.small, s.margin + length / 2, baseline - thickness - 0.5 * s.small,
-                         captions.scale, Align::centre);
+    draw_text_on_picture(cairo, font, s.small, middle, box.bottom - thickness - 0.5 * s.small, captions.scale,
+                         Align::centre);
   });
 }
 
 }  // namespace
 
 void draw_captions(Image& image, const Font& font, const Frame& frame) {
-  const ViewParameters& view = frame.view;
-  if (frame.legend && view.colour_bar)
-    draw_colour_bar(image, font, *frame.legend, frame.legend->mirrored && view.sign_dots);
-  if (frame.profile && view.flow_profile) draw_flow_profile(image, font, *frame.profile);
-  if (frame.inset && view.inset) draw_inset(image, font, *frame.inset);
-  if (view.triad) draw_triad(image, font, frame.camera);
-  draw_corner(image, font, frame);
-  draw_title(image, font, frame);
-  draw_panel_name(image, font, frame.captions.panel);
-  if (view.scale_bar) draw_scale_bar(image, font, frame.captions, frame.camera);
+  const OverlayLayout layout = lay_out(frame, font);
+  if (layout.colour_bar)
+    draw_colour_bar(image, font, *frame.legend, layout.bar, frame.legend->mirrored && frame.view.sign_dots);
+  if (layout.profile) draw_flow_profile(image, font, *frame.profile, layout.profile_reach);
+  if (layout.inset) draw_inset(image, font, *frame.inset, *layout.inset);
+  if (layout.triad) draw_triad(image, font, frame.camera, *layout.triad, layout.triad_length);
+  for (const TextPlace& line : layout.texts) draw_line(image, font, line);
+  draw_scale_bar(image, font, frame.captions, layout);
 }
 
 }  // namespace render

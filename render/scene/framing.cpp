@@ -70,7 +70,7 @@ Moment Framing::moment(const StateSummary& state) const {
 namespace {
 
 constexpr double tangent_of_half_angle = 0.18;  // vertical; a long lens: shapes are hardly distorted
-constexpr double strays = 1.5;                  // follow = "auto": drift / extent above which the camera follows
+constexpr double strays = 0.5;                  // follow = "auto": drift / extent above which the camera follows
 constexpr double neighbourhood = 1.7;           // times the vesicle that is followed: room for what happens beside it
 
 struct Extent {
@@ -202,9 +202,11 @@ void place_eye(Framing& framing, const ViewParameters& view) {
 }
 
 // The picture must hold every point; a nearer one looks larger.
-void fit(Framing& framing, double zoom, std::span<const StateSummary> states) {
+void fit(Framing& framing, const ViewParameters& view, std::span<const StateSummary> states) {
+  const double zoom = view.zoom;
   const double margin = framing.vesicle >= 0 ? neighbourhood : 1;
-  const double tx = tangent_of_half_angle * framing.aspect * bodies_width / margin;
+  const double width = view.flow_profile ? bodies_width_beside_profile : bodies_width;
+  const double tx = tangent_of_half_angle * framing.aspect * width / margin;
   const double ty = tangent_of_half_angle * bodies_height / margin;
   double distance = 0, half_height = 0;
   for (const StateSummary& state : states) {
@@ -214,8 +216,8 @@ void fit(Framing& framing, double zoom, std::span<const StateSummary> states) {
     for (auto [k, end] = shown_points(framing, state); k < end; ++k) {
       const dvec3 p = to_picture * (state.point(k) - origin);
       distance = std::max({distance, p.z + std::abs(p.x) / tx, p.z + std::abs(p.y) / ty});
-      half_height = std::max({half_height, margin * std::abs(p.y) / bodies_height,
-                              margin * std::abs(p.x) / (bodies_width * framing.aspect)});
+      half_height = std::max(
+          {half_height, margin * std::abs(p.y) / bodies_height, margin * std::abs(p.x) / (width * framing.aspect)});
     }
   }
   if (!(distance > 0 && half_height > 0)) distance = half_height = 1;  // a point; any picture of it will do
@@ -237,7 +239,7 @@ Framing frame_trajectory(std::span<const StateSummary> states, const ViewParamet
   if (view.eye)
     place_eye(framing, view);
   else
-    fit(framing, view.zoom, states);
+    fit(framing, view, states);
   return framing;
 }
 

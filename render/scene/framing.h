@@ -56,7 +56,7 @@ struct Framing {
 };
 
 /// Fits all states into the picture, with room for captions. `follow = "auto"` follows the centroid when it moves by
-/// more than 1.5 times the extent of the vesicles at one instant (a few radii for a single vesicle); a following
+/// more than half the extent of the vesicles at one instant; a following
 /// framing takes its scale from the largest extent about the centroid at any instant. Empty input frames the unit
 /// sphere. view.follow "vesicle" follows one vesicle, with room for its neighbours; view.eye and view.target place
 /// the camera instead. Throws std::invalid_argument for a vesicle that does not exist, two key frames of the same

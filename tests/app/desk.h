@@ -26,9 +26,10 @@ supersampling = 1
 struct Desk : support::TemporaryFolder {
   explicit Desk(const std::string& text = scene) { support::write_file(file("s.toml"), text); }
   std::string file(const std::string& name) const { return (path() / name).string(); }
-  support::Outcome operator()(std::vector<std::string> words) const {
-    words.insert(words.begin(), TANKTREAD_PROGRAM);
-    return support::run(*this, words);
+  support::Outcome operator()(const std::vector<std::string>& words) const {
+    std::vector<std::string> all{TANKTREAD_PROGRAM};
+    all.insert(all.end(), words.begin(), words.end());
+    return support::run(*this, all);
   }
   /// Names in the folder, but for those of the test itself.
   std::set<std::string> names() const {

@@ -1,4 +1,4 @@
-// The range of a field that was not given follows the values of the whole movie.
+// The range of a field that was not given follows the values that are shown.
 #include "app/pictures/flow_picture.h"
 #include "app/pictures/painting.h"
 #include "app/pictures/pictures.h"
@@ -154,6 +154,56 @@ TEST_CASE("the bar has a head where values lie beyond a range that was given, an
   CHECK_FALSE(below.below);
   CHECK(below.above);
   CHECK(bar_of("[-1, 0]", false).above);  // of the movie
+}
+
+TEST_CASE(
+    "a still has the range of its own values, and a field with a sign is about zero on one map, whatever they are") {
+  const render::Legend still = bar_of("[]", true), movie = bar_of("[]", false);
+  // The tension at the end lies between some 90 and 270; at the start it is larger.
+  CHECK(still.high >= 250);
+  CHECK(still.high <= 300);
+  CHECK(movie.high > still.high);
+  for (const render::Legend& legend : {still, movie}) {
+    CHECK(legend.low == -legend.high);
+    CHECK(legend.mirrored);
+    CHECK(legend.colours == render::colour_table(render::find_colour_map("blue-red")));
+  }
+  CHECK(legend_of("membrane-speed", 1).colours == render::colour_table(render::find_colour_map("viridis")));
+}
+
+TEST_CASE("what happens at the start of a movie alone does not set its range, and the bar says that it lies beyond") {
+  const support::TemporaryFolder folder;
+  // A slender prolate relaxes: its membrane is soon almost at rest.
+  const app::Settings settings = app::parse_scene(R"([flow]
+kind = "none"
+[time]
+end = 60
+step = 1.5
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.7
+bending_modulus = 1
+order = 8
+[view]
+style = "field"
+field = "membrane-speed"
+)",
+                                                  "s.toml", ".");
+  const std::string file = (folder / "t.h5").string();
+  sim::SimulationOptions options;
+  options.trajectory = file;
+  sim::simulate(settings.scene, options, {});
+  const sim::TrajectoryReader reader(file);
+  std::vector<std::int64_t> all, late;
+  for (std::int64_t k = 0; k < reader.count(); ++k) {
+    all.push_back(k);
+    if (reader.time(k) >= 6) late.push_back(k);
+  }
+  const render::Legend movie = app::plan_painting(reader, all, settings, 1).legend.value();
+  const render::Legend first = app::plan_painting(reader, {0}, settings, 1).legend.value();
+  CHECK(movie.high == app::plan_painting(reader, late, settings, 1).legend->high);
+  CHECK(movie.high < first.high / 1.5);
+  CHECK(movie.above);
 }
 
 TEST_CASE("a field that vanishes up to rounding has a range of its natural size, in any unit") {

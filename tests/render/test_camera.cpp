@@ -68,9 +68,9 @@ TEST_CASE("all points of all states lie inside the picture, in every camera and 
       }
 }
 
-TEST_CASE("the camera stays until the drift exceeds a few radii, then follows") {
-  CHECK_FALSE(render::frame_trajectory(drifting(2), {}).follows);
-  CHECK(render::frame_trajectory(drifting(10), {}).follows);
+TEST_CASE("the camera stays until the drift exceeds half of what is seen at once, then follows") {
+  CHECK_FALSE(render::frame_trajectory(drifting(0.9), {}).follows);
+  CHECK(render::frame_trajectory(drifting(2), {}).follows);
   render::ViewParameters never;
   never.follow = "never";
   CHECK_FALSE(render::frame_trajectory(drifting(10), never).follows);
@@ -83,7 +83,7 @@ TEST_CASE("the camera stays until the drift exceeds a few radii, then follows") 
 }
 
 TEST_CASE("a fixed camera gives one and the same matrix for every frame") {
-  const auto states = drifting(2);
+  const auto states = drifting(0.8);
   const render::Framing framing = render::frame_trajectory(states, {});
   CHECK(render::make_camera(framing, states.front().centroid).view ==
         render::make_camera(framing, states.back().centroid).view);
@@ -102,7 +102,7 @@ TEST_CASE("arrows of a following camera stay at rest in space") {
 }
 
 TEST_CASE("arrows stand in the coordinate plane that faces the camera, inside the picture and clear of the captions") {
-  const auto states = drifting(1);
+  const auto states = drifting(0.8);
   for (const auto& [name, axis] : {std::pair{"flow-gradient", 1}, std::pair{"three-quarter", 1},
                                    std::pair{"flow-vorticity", 2}, std::pair{"gradient-vorticity", 0}})
     for (const char* projection : {"perspective", "orthographic"}) {

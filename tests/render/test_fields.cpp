@@ -2,6 +2,7 @@
 #include "render/core/style.h"
 #include "render/draw/draw.h"
 #include "render/overlay/colour_bar.h"
+#include "render/overlay/layout.h"
 
 #include "surfaces.h"
 #include "tests/support/catch.h"
@@ -104,15 +105,15 @@ TEST_CASE("a pixel of a painted sphere has the colour that the bar has at its va
     frame.legend->low = -1.2;
     frame.legend->high = 1.5;
     const Image image = render::draw_frame(renderer, frame);
-    const render::BarPlace bar = render::colour_bar_place(image, render::Font(), *frame.legend);
+    const render::Box bar = render::lay_out(frame, render::Font()).bar;
     const double px = 200 / frame.camera.half_width;
     int compared = 0;
     for (int y = 0; y < 400; ++y)
       for (int x = 40; x < 300; ++x) {
         const double right = (x + 0.5 - 200) / px, up = (200 - y - 0.5) / px;
         if (std::hypot(right, up) > 0.85 || x >= bar.left - 2) continue;  // beyond it turns away by 60 degrees
-        const int row = static_cast<int>(std::floor(bar.top + bar.height * (1 - (up + 1.2) / 2.7)));
-        const std::uint8_t *p = image.at(x, y), *q = image.at(static_cast<int>(bar.left + bar.width / 2), row);
+        const int row = static_cast<int>(std::floor(bar.top + bar.height() * (1 - (up + 1.2) / 2.7)));
+        const std::uint8_t *p = image.at(x, y), *q = image.at(static_cast<int>(bar.left + bar.width() / 2), row);
         for (int c = 0; c < 3; ++c) CHECK(std::abs(p[c] - q[c]) <= 4);  // one row of the bar is 1/184 of the map
         ++compared;
       }

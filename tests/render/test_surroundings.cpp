@@ -1,6 +1,7 @@
 // What is drawn around membranes: the flow and the captions.
 #include "render/core/places.h"
 #include "render/draw/draw.h"
+#include "render/overlay/layout.h"
 #include "render/overlay/overlay.h"
 #include "render/scene/arrow_net.h"
 
@@ -107,36 +108,107 @@ TEST_CASE("lines of the flow lie behind closed membranes, and in their place ins
   }
 }
 
-TEST_CASE("every overlay is drawn where arrows are kept away from it") {
-  using render::Overlay;
-  constexpr int width = 960, height = 540;
+namespace {
+
+/// Everything that can lie over a picture at once, with texts of any length.
+render::Frame crowded(int width, int height, const std::string& title, const std::string& parameters) {
+  render::Frame frame;
+  frame.view = surfaces::bare_view(width, height);
+  frame.view.time_stamp = frame.view.caption = frame.view.errors = frame.view.scale_bar = frame.view.title = true;
+  frame.view.triad = frame.view.flow_profile = frame.view.inset = frame.view.colour_bar = true;
+  frame.captions.time = "γ̇t = 1234.50·10^{−6}";
+  frame.captions.parameters = parameters;
+  frame.captions.errors = "error of position 1.1·10^{−3} R_{0}";
+  frame.captions.note = "lines will be laid anew at γ̇t = 12.50";
+  frame.captions.title = title;
+  frame.captions.panel = "gradient-vorticity";
+  frame.camera.half_width = 4.0 * width / height;
+  frame.camera.half_height = 4;
+  frame.legend.emplace().label = "σ R_{0}^{2}/κ_{b}";
+  frame.legend->low = -12000;
+  frame.legend->high = 12000;
+  frame.legend->below = frame.legend->above = true;
+  frame.inset.emplace();
+  frame.profile.emplace().points = {{-render::profile_reach, 0.5}, {0, 1}, {render::profile_reach, 0.5}};
+  return frame;
+}
+
+const std::string long_text = "A very long title of a scene that nobody would want to read, but somebody wrote, ∂ω/∂t";
+
+}  // namespace
+
+TEST_CASE("no overlay of a picture meets another or its edge, whatever the size and the texts") {
   const render::Font font;
-  for (const Overlay overlay :
-       {Overlay::colour_bar, Overlay::triad, Overlay::inset, Overlay::profile, Overlay::title, Overlay::panel}) {
-    render::Frame frame;
-    frame.view = surfaces::bare_view(width, height);
-    frame.view.triad = overlay == Overlay::triad;
-    frame.view.colour_bar = frame.view.inset = frame.view.flow_profile = true;
-    if (overlay == Overlay::colour_bar) frame.legend.emplace().label = "speed";
-    if (overlay == Overlay::inset) frame.inset.emplace();
-    if (overlay == Overlay::profile)
-      frame.profile.emplace().points = {{-render::profile_reach, -1}, {0, 0}, {render::profile_reach, 1}};
-    if (overlay == Overlay::title) frame.captions.title = "Two vesicles in shear";
-    if (overlay == Overlay::panel) frame.captions.panel = "flow-gradient";
+  for (const auto& [width, height] : {std::pair{1920, 1080},
+                                      {3840, 2160},
+                                      {1280, 720},
+                                      {640, 360},
+                                      {480, 540},
+                                      {320, 540},
+                                      {240, 1080},
+                                      {320, 180},
+                                      {160, 90},
+                                      {400, 400},
+                                      {2000, 300}})
+    for (const std::string& title : {std::string(), std::string("Slipper"), long_text})
+      for (const std::string& parameters :
+           {std::string("λ = 1"), std::string("Ca = 100   λ = 1, 10, 100   ν = 0.85"),
+            std::string("Ca = 0.001 to 1000   Bo = 0.25 to 12   λ = 0.1 to 1000   ν = 0.65")}) {
+        INFO(width << " x " << height << ", '" << title << "', '" << parameters << "'");
+        const render::OverlayLayout layout = render::lay_out(crowded(width, height, title, parameters), font);
+        const std::vector<render::Box> boxes = layout.boxes();
+        for (std::size_t a = 0; a < boxes.size(); ++a) {
+          INFO("box " << a << ": " << boxes[a].left << " " << boxes[a].top << " " << boxes[a].right << " "
+                      << boxes[a].bottom);
+          CHECK((boxes[a].left >= 0 && boxes[a].top >= 0 && boxes[a].right <= width && boxes[a].bottom <= height));
+          for (std::size_t b = a + 1; b < boxes.size(); ++b) {
+            INFO("box " << b << ": " << boxes[b].left << " " << boxes[b].top << " " << boxes[b].right << " "
+                        << boxes[b].bottom);
+            CHECK(render::apart(boxes[a], boxes[b]));
+          }
+        }
+        if (width < 640 || height < 360) continue;  // there everything has room
+        CHECK((layout.colour_bar && layout.inset && layout.profile && layout.triad && layout.scale_bar));
+        CHECK(layout.texts.size() >= 5U + !title.empty());
+      }
+}
+
+TEST_CASE("what lies over a picture is drawn in its boxes") {
+  const render::Font font;
+  for (const auto& [width, height] : {std::pair{960, 540}, {480, 540}, {320, 180}}) {
+    const render::Frame frame = crowded(width, height, long_text, "Ca = 100   λ = 1   ν = 0.85");
+    const std::vector<render::Box> boxes = render::lay_out(frame, font).boxes();
     Image image(width, height, 3);
     std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{255});
     render::draw_captions(image, font, frame);
-    int inside = 0, outside = 0;
+    int inside = 0, outside = 0, at_x = 0, at_y = 0;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         if (!drawn(image.at(x, y))) continue;
-        const glm::dvec2 place((2 * x + 1.0) / width - 1, 1 - (2 * y + 1.0) / height);
-        ++(render::clear_of(overlay, place, static_cast<double>(width) / height) < 0.5 ? inside : outside);
+        constexpr double round = 2.5;  // px: tails of letters, half the width of a line
+        const bool held = std::any_of(boxes.begin(), boxes.end(), [&](const render::Box& b) {
+          return x + 0.5 > b.left - round && x + 0.5 < b.right + round && y + 0.5 > b.top - round &&
+                 y + 0.5 < b.bottom + round;
+        });
+        ++(held ? inside : outside);
+        if (!held) at_x = x, at_y = y;
       }
-    INFO("overlay " << static_cast<int>(overlay));
-    CHECK(inside > 100);
+    INFO(width << " x " << height << ", last outside " << at_x << ", " << at_y);
+    CHECK(inside > 1000);
     CHECK(outside == 0);
   }
+}
+
+TEST_CASE("arrows are clear of a box away from it, hidden in it, and fade in between") {
+  const std::vector<render::Box> boxes{{100, 100, 200, 150}};
+  const std::vector<int> size{400, 300};
+  const auto clear = [&](double x, double y) {
+    return render::clear_of(boxes, {2 * x / size[0] - 1, 1 - 2 * y / size[1]}, size);
+  };
+  CHECK(clear(150, 120) == 0);
+  CHECK(clear(300, 120) == 1);
+  CHECK(clear(210, 120) > 0);
+  CHECK(clear(210, 120) < 1);
 }
 
 TEST_CASE("captions are drawn where asked for and leave the rest alone") {

@@ -230,7 +230,8 @@ def poiseuille(s):
     out.append(s.check("parachute: distance from the axis", abs(rows_of(s, "parachute")["center_z"]), None, 1e-3))
     for order in (8, 12, 16):
         last = rows_of(s, "parachute", f"vesicle.order={order}")
-        out.append(f"| parachute: energy and speed at p = {order} | {last['energy']:.4f}, {last['speed']:.4f} | | |")
+        out.append(f"| parachute: energy, and speed less that of the fluid on the axis, at p = {order} | {last['energy']:.4f}, "
+                   f"{last['speed'] - 0.25:.4f} | | |")  # flow.centreline_velocity
     by_order = {order: rows_of(s, "slipper", f"vesicle.order={order}") for order in (8, 12, 16, 20)}
     for order, last in by_order.items():
         out.append(f"| slipper: tilt (degrees), distance from the axis at p = {order} | {last['inclination_deg']:.3f}, "

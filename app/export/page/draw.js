@@ -1,0 +1,344 @@
+// A frame: the membranes of one time as meshes, and the passes that draw them, as render/draw of the program does.
+
+const mostVertices = 60000;
+
+class Scene {
+  constructor(gl, page, data) {
+    Object.assign(this, { gl, page, data, paint: new Paint(gl, page) });
+    const count = page.vesicles.length;
+    // as fine as the movies for one or two vesicles, coarser for a crowd
+    this.mesh = new Mesh(Math.min(96, Math.max(16, 2 * Math.floor(Math.sqrt(mostVertices / count / 2) / 2))));
+    const vertices = this.mesh.vertices * count;
+    const array = size => new Float32Array(size * vertices);
+    this.arrays = { position: array(3), normal: array(3), label: array(3), dots: array(2), scalar: array(1) };
+    this.slopes = { theta: new Float32Array(3 * this.mesh.vertices), phi: new Float32Array(3 * this.mesh.vertices) };
+    this.places = [["position", 0, 3], ["normal", 1, 3], ["label", 2, 3], ["dots", 3, 2], ["scalar", 6, 1]];
+    this.buffers = {};
+    for (const [name] of this.places) this.buffers[name] = this.buffer(this.arrays[name]);
+    this.corners = gl.createBuffer();
+    this.bodies = page.vesicles.map((_, v) => this.body(v));
+    this.nothing = gl.createVertexArray();
+    this.makeGhost(vertices);
+    this.makeArrows();
+  }
+
+  buffer(values) {
+    const { gl } = this, buffer = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, values, gl.DYNAMIC_DRAW);
+    return buffer;
+  }
+
+  refill(buffer, values) {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, values);
+  }
+
+  attribute(buffer, place, size, first = 0, divisor = 0) {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.enableVertexAttribArray(place);
+    gl.vertexAttribPointer(place, size, gl.FLOAT, false, 0, 4 * size * first);
+    gl.vertexAttribDivisor(place, divisor);
+  }
+
+  body(v) {
+    const { gl } = this, array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    for (const [name, place, size] of this.places) this.attribute(this.buffers[name], place, size, v * this.mesh.vertices);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+    if (v === 0) gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.mesh.indices, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    return { array, tracers: [] };
+  }
+
+  makeGhost(vertices) {
+    const { gl, page, mesh } = this, colours = new Float32Array(3 * vertices);
+    page.vesicles.forEach((vesicle, v) => {
+      for (let k = 0; k < mesh.vertices; ++k) colours.set(vesicle.colour, 3 * (v * mesh.vertices + k));
+    });
+    const dots = new Float32Array(4 * vertices), next = new Float32Array(4 * vertices);
+    const ghost = { array: gl.createVertexArray(), dots, next, sorted: new Uint32Array(mesh.indices.length * page.vesicles.length) };
+    gl.bindVertexArray(ghost.array);
+    for (const [name, place, size] of this.places) if (name !== "dots") this.attribute(this.buffers[name], place, size);
+    ghost.dotBuffer = this.buffer(dots);
+    ghost.nextBuffer = this.buffer(next);
+    this.attribute(ghost.dotBuffer, 3, 4);
+    this.attribute(ghost.nextBuffer, 4, 4);
+    this.attribute(this.buffer(colours), 5, 3);
+    ghost.corners = gl.createBuffer();
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, ghost.corners);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, ghost.sorted, gl.DYNAMIC_DRAW);
+    gl.bindVertexArray(null);
+    this.ghost = ghost;
+  }
+
+  makeArrows() {
+    const { gl, page } = this, numbers = new Float32Array(bytesOf(page.arrow_shape).buffer), half = numbers.length / 2;
+    const most = Math.max(1, ...page.arrow_counts);
+    const arrows = { array: gl.createVertexArray(), vertices: half / 3, starts: new Float32Array(4 * most), vectors: new Float32Array(3 * most) };
+    gl.bindVertexArray(arrows.array);
+    this.attribute(this.buffer(numbers.subarray(0, half)), 0, 3);
+    this.attribute(this.buffer(numbers.subarray(half)), 1, 3);
+    arrows.startBuffer = this.buffer(arrows.starts);
+    arrows.vectorBuffer = this.buffer(arrows.vectors);
+    this.attribute(arrows.startBuffer, 2, 4, 0, 1);
+    this.attribute(arrows.vectorBuffer, 3, 3, 0, 1);
+    gl.bindVertexArray(null);
+    this.arrows = arrows;
+  }
+
+  // Evaluates the membranes at a time counted in frames.
+  evaluate(time) {
+    const { mesh, arrays, slopes, page, data } = this, count = mesh.vertices;
+    this.time = time;
+    page.vesicles.forEach((vesicle, v) => {
+      const series = data.vesicles[v], part = (name, size) => arrays[name].subarray(size * v * count, size * (v + 1) * count);
+      const coefficients = numbersAt(series.position, time, vesicle.breaks);
+      const position = part("position", 3), normal = part("normal", 3), label = part("label", 3);
+      mesh.sample(coefficients, 3, position, slopes);
+      for (let k = 0; k < 3 * count; k += 3) {
+        const { theta, phi } = slopes;
+        const x = theta[k + 1] * phi[k + 2] - theta[k + 2] * phi[k + 1], y = theta[k + 2] * phi[k] - theta[k] * phi[k + 2],
+              z = theta[k] * phi[k + 1] - theta[k + 1] * phi[k], size = Math.sqrt(x * x + y * y + z * z) || 1;
+        normal[k] = x / size;
+        normal[k + 1] = y / size;
+        normal[k + 2] = z / size;
+      }
+      if (page.paint.grid_lines) {
+        label.set(mesh.parameters);
+      } else {
+        mesh.sample(numbersAt(series.labels, time, vesicle.breaks), 3, label);
+        for (let k = 0; k < 3 * count; k += 3) {
+          const size = Math.sqrt(label[k] ** 2 + label[k + 1] ** 2 + label[k + 2] ** 2) || 1;
+          label[k] /= size;
+          label[k + 1] /= size;
+          label[k + 2] /= size;
+        }
+      }
+      if (series.field.rows > 0) mesh.sample(numbersAt(series.field, time, vesicle.breaks), 1, part("scalar", 1));
+      const places = numbersAt(series.tracers, time, vesicle.breaks), tracers = [];
+      for (let k = 0; k + 2 < places.length; k += 3)
+        tracers.push({ ...surfacePoint(coefficients, places.slice(k, k + 3)), bright: isBright(k / 3) });
+      this.bodies[v].tracers = tracers;
+      nearestTracers(position, normal, tracers, part("dots", 2));
+    });
+    for (const [name] of this.places) this.refill(this.buffers[name], arrays[name]);
+  }
+
+  draw(styleName, camera, size) {
+    const { gl, page } = this, style = page.styles.find(s => s.name === styleName) || page.styles[0];
+    const matrices = camera.matrices(size), height = size.height / matrices.fit;
+    // px of the page at a height of 1080 in samples
+    const samples = (px, least) => size.scale * Math.max(px * height / 1080, Math.min(px, least));
+    const look = { style, matrices, samples, size, height, line: samples(page.paint.line_width / 2, 0.42), outline: samples(page.paint.outline_width, 1) };
+    gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.CULL_FACE);
+    gl.cullFace(gl.BACK);
+    gl.disable(gl.DEPTH_TEST);
+    this.paint.ground(this.paint.use("ground", ""));
+    gl.bindVertexArray(this.nothing);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.enable(gl.DEPTH_TEST);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    this.drawArrows(look, camera);
+    if (style.see_through) this.drawGhosts(look);
+    else this.drawBodies(look);
+    gl.bindVertexArray(null);
+  }
+
+  drawArrows({ matrices }, camera) {
+    const { gl, page, data, arrows } = this, frame = Math.round(this.time), count = page.arrow_counts[frame];
+    const { back } = camera.home.axes, leading = [0, 1, 2].reduce((best, k) => Math.abs(back[k]) > Math.abs(back[best]) ? k : best, 0);
+    const facing = smoothstep(0.2, 0.45, Math.abs(camera.axes.back[leading]));
+    if (count === 0 || facing === 0) return;
+    const shadows = this.shadows(matrices);
+    for (let k = 0; k < count; ++k) {
+      const at = n => data.arrows.values[(6 * k + n) * page.frames + frame];
+      const middle = [at(0), at(1), at(2)], vector = [at(3), at(4), at(5)];
+      const long = Math.hypot(...vector) >= 0.1 * page.paint.longest_arrow * page.camera.half_height;
+      const tail = placeOf(matrices, combined([1, middle], [-0.5, vector])), tip = placeOf(matrices, combined([1, middle], [0.5, vector]));
+      arrows.starts.set([...middle, long ? facing * clearOf(shadows, tail, tip) : 0], 4 * k);
+      arrows.vectors.set(vector, 3 * k);
+    }
+    this.refill(arrows.startBuffer, arrows.starts);
+    this.refill(arrows.vectorBuffer, arrows.vectors);
+    const set = this.paint.use("arrow", "", matrices);
+    this.paint.ground(set);
+    set.vector("u_colour", page.paint.arrow);
+    set.number("u_height", gl.drawingBufferHeight);
+    set.number("u_thickness", page.paint.arrow_thickness * page.camera.half_height);
+    gl.bindVertexArray(arrows.array);
+    gl.drawArraysInstanced(gl.TRIANGLES, 0, arrows.vertices, count);
+    gl.clear(gl.DEPTH_BUFFER_BIT);  // they stand behind everything
+  }
+
+  // Some points of the membranes as the picture shows them.
+  shadows(matrices) {
+    const { mesh, arrays, bodies } = this, places = [], stride = Math.max(3, Math.floor(mesh.vertices * bodies.length / 6000));
+    for (let k = 0; k < arrays.position.length / 3; k += stride)
+      places.push(placeOf(matrices, [arrays.position[3 * k], arrays.position[3 * k + 1], arrays.position[3 * k + 2]]));
+    return places;
+  }
+
+  drawBodies(look) {
+    const { gl, page, bodies, mesh } = this, { style, matrices } = look, outlined = page.paint.outline_width > 0;
+    const each = action => bodies.forEach((body, v) => {
+      gl.bindVertexArray(body.array);
+      action(body, page.vesicles[v]);
+    });
+    each((body, vesicle) => this.drawBody(look, body, vesicle));
+    if (!outlined) return;
+    const set = this.paint.use("outline", "", matrices);
+    const hull = (vesicle, more, share) => {
+      const width = look.outline + more;
+      set.pair("u_push", [2 * width / gl.drawingBufferWidth, 2 * width / gl.drawingBufferHeight]);
+      set.vector("u_colour", vesicle.contour);
+      set.number("u_alpha", share);
+      gl.drawElements(gl.TRIANGLES, mesh.indices.length, gl.UNSIGNED_INT, 0);
+    };
+    const step = page.paint.edge_step;
+    gl.cullFace(gl.FRONT);
+    each((_, vesicle) => hull(vesicle, -step, 1));
+    gl.enable(gl.BLEND);
+    gl.depthMask(false);
+    each((_, vesicle) => {
+      hull(vesicle, 0, 1 / 2);
+      hull(vesicle, step, 1 / 3);
+    });
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
+    gl.cullFace(gl.BACK);
+  }
+
+  drawBody({ style, matrices, line, height }, body, vesicle) {
+    const { gl, page, mesh } = this, set = this.paint.use("body", style.defines, matrices);
+    const white = [1, 1, 1];
+    set.vector("u_colour", style.own_colour ? vesicle.colour : white);
+    set.vector("u_line_colour", style.own_colour ? vesicle.line : page.paint.white_line);
+    set.vector("u_contour", vesicle.contour);
+    set.number("u_half_width", line);
+    if (style.field) {
+      gl.activeTexture(gl.TEXTURE0);
+      gl.bindTexture(gl.TEXTURE_2D, this.paint.map);
+      set.whole("u_map", 0);
+      const spacing = Math.max(page.paint.sign_dot_spacing * height / 1080, page.paint.sign_dot_least);
+      set.number("u_dot_spacing", 2 * spacing / height);
+    }
+    if (style.tracers) {
+      const dots = new Float32Array(4 * Math.max(body.tracers.length, 1)).fill(-1);
+      body.tracers.forEach((tracer, k) => dots.set([...eyePlace(matrices, tracer.point), tracer.bright ? 1 : 0], 4 * k));
+      set.vectors4("u_tracer", dots);
+      this.paint.tracers(set, vesicle.radius / matrices.unit);
+    }
+    gl.drawElements(gl.TRIANGLES, mesh.indices.length, gl.UNSIGNED_INT, 0);
+  }
+
+  drawGhosts({ style, matrices, line, outline }) {
+    const { gl, page, ghost, mesh, arrays, bodies } = this;
+    if (style.tracers) {
+      bodies.forEach(({ tracers }, v) => {
+        const places = tracers.map(tracer => [...eyePlace(matrices, tracer.point), tracer.bright ? 1 : 0]);
+        for (let k = v * mesh.vertices; k < (v + 1) * mesh.vertices; ++k) {
+          ghost.dots.set(places[arrays.dots[2 * k]] || [0, 0, 0, -1], 4 * k);
+          ghost.next.set(places[arrays.dots[2 * k + 1]] || [0, 0, 0, -1], 4 * k);
+        }
+      });
+      this.refill(ghost.dotBuffer, ghost.dots);
+      this.refill(ghost.nextBuffer, ghost.next);
+    }
+    sortBackToFront(matrices.view, arrays.position, mesh, bodies.length, ghost.sorted);
+    const set = this.paint.use("body", style.defines, matrices);
+    set.vector("u_line_colour", page.paint.line_ink);
+    set.vector("u_contour", page.paint.outline_ink);
+    set.number("u_contour_width", outline);
+    set.number("u_half_width", line);
+    set.number("u_opacity", page.paint.opacity);
+    this.paint.tracers(set, Math.max(...page.vesicles.map(v => v.radius)) / matrices.unit);
+    gl.bindVertexArray(ghost.array);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, ghost.corners);
+    gl.bufferSubData(gl.ELEMENT_ARRAY_BUFFER, 0, ghost.sorted);
+    gl.enable(gl.BLEND);
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.CULL_FACE);
+    gl.drawElements(gl.TRIANGLES, ghost.sorted.length, gl.UNSIGNED_INT, 0);
+    gl.enable(gl.CULL_FACE);
+    gl.enable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+  }
+}
+
+function smoothstep(low, high, x) {
+  const t = Math.min(Math.max((x - low) / (high - low), 0), 1);
+  return t * t * (3 - 2 * t);
+}
+
+function eyePlace({ view }, p) {
+  return [0, 1, 2].map(r => view[r] * p[0] + view[4 + r] * p[1] + view[8 + r] * p[2] + view[12 + r]);
+}
+
+// 0 when the segment touches a membrane's shadow, 1 when it is well away.
+function clearOf(shadows, tail, tip) {
+  const near = 0.03, far = 0.055, along = [tip[0] - tail[0], tip[1] - tail[1]];
+  const length2 = Math.max(along[0] ** 2 + along[1] ** 2, 1e-12);
+  let nearest2 = far * far;
+  for (const [x, y] of shadows) {
+    const u = Math.min(Math.max(((x - tail[0]) * along[0] + (y - tail[1]) * along[1]) / length2, 0), 1);
+    nearest2 = Math.min(nearest2, (x - tail[0] - u * along[0]) ** 2 + (y - tail[1] - u * along[1]) ** 2);
+  }
+  return smoothstep(near, far, Math.sqrt(nearest2));
+}
+
+// Of the initial direction of tracer k: +x -x +y -y +z -z, then the corners of a cube; is x + y + z > 0?
+function isBright(k) {
+  if (k < 6) return k % 2 === 0;
+  const corner = (k - 6) % 8;
+  return (corner >> 2 & 1) + (corner >> 1 & 1) + (corner & 1) <= 1;
+}
+
+// For each vertex the two nearest tracers on its side of the membrane, -1 where there is none.
+function nearestTracers(position, normal, tracers, out) {
+  for (let v = 0; v < position.length / 3; ++v) {
+    const x = position[3 * v], y = position[3 * v + 1], z = position[3 * v + 2];
+    let first = Infinity, second = Infinity, nearest = -1, next = -1;
+    for (let k = 0; k < tracers.length; ++k) {
+      const { point: p, normal: n } = tracers[k], d = (x - p[0]) ** 2 + (y - p[1]) ** 2 + (z - p[2]) ** 2;
+      if (d >= second || normal[3 * v] * n[0] + normal[3 * v + 1] * n[1] + normal[3 * v + 2] * n[2] < 0.2) continue;
+      if (d < first) {
+        second = first;
+        next = nearest;
+        first = d;
+        nearest = k;
+      } else {
+        second = d;
+        next = k;
+      }
+    }
+    out[2 * v] = nearest;
+    out[2 * v + 1] = next;
+  }
+}
+
+// All triangles, the farthest first: a counting sort of depths in 65,536 steps.
+function sortBackToFront(view, position, mesh, bodies, sorted) {
+  const { indices, vertices } = mesh, each = indices.length / 3, count = each * bodies;
+  const depth = new Float32Array(vertices * bodies), middle = new Float32Array(count);
+  for (let v = 0; v < depth.length; ++v)
+    depth[v] = view[2] * position[3 * v] + view[6] * position[3 * v + 1] + view[10] * position[3 * v + 2];
+  let low = Infinity, high = -Infinity;
+  for (let t = 0; t < count; ++t) {
+    const first = Math.floor(t / each) * vertices, i = 3 * (t % each);
+    middle[t] = depth[first + indices[i]] + depth[first + indices[i + 1]] + depth[first + indices[i + 2]];
+    low = Math.min(low, middle[t]);
+    high = Math.max(high, middle[t]);
+  }
+  const steps = 65536, scale = (steps - 1) / Math.max(high - low, 1e-30), starts = new Uint32Array(steps + 1);
+  for (let t = 0; t < count; ++t) ++starts[Math.floor((middle[t] - low) * scale) + 1];
+  for (let k = 0; k < steps; ++k) starts[k + 1] += starts[k];
+  for (let t = 0; t < count; ++t) {
+    const first = Math.floor(t / each) * vertices, i = 3 * (t % each), to = 3 * starts[Math.floor((middle[t] - low) * scale)]++;
+    for (let k = 0; k < 3; ++k) sorted[to + k] = first + indices[i + k];
+  }
+}

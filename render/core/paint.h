@@ -1,0 +1,33 @@
+// Colours of a membrane's paint, and the sizes of what is painted on it; the shaders do the rest.
+#pragma once
+
+#include "render/core/palette.h"
+
+#include <glm/glm.hpp>
+
+#include <cmath>
+
+namespace render {
+
+inline constexpr double tracer_radius = 0.088;  ///< area radii
+inline constexpr double edge_step = 1.0 / 3;    ///< samples between the hulls of an outline
+/// Arrows of the flow: the longest, and the radius of all; half heights of the picture.
+inline constexpr double longest_arrow = 0.21, arrow_thickness = 0.009;
+
+inline glm::vec3 vector_of(const Colour& c) { return {c.r, c.g, c.b}; }
+
+inline glm::vec3 linear(const Colour& c) {
+  const auto decode = [](double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); };
+  return {decode(c.r), decode(c.g), decode(c.b)};
+}
+
+/// Linear colour of the lines where several membranes are one draw: each adds a share of its own.
+inline constexpr glm::vec3 line_ink{0.010F, 0.012F, 0.018F};
+/// ... on a membrane of this linear colour.
+inline glm::vec3 line_colour(const glm::vec3& membrane) { return 0.07F * membrane + line_ink; }
+
+/// sRGB; likewise.
+inline constexpr glm::vec3 outline_ink{0.10F, 0.11F, 0.14F};
+inline Colour outline_colour(const Colour& c) { return {0.10 + 0.08 * c.r, 0.11 + 0.08 * c.g, 0.14 + 0.08 * c.b}; }
+
+}  // namespace render
