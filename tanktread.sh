@@ -12,7 +12,8 @@ build=$root/build/release
 # What the program needs. Where names are joined by '|', the first that the system offers is enough.
 packages=(g++ cmake ninja-build 'pkgconf|pkg-config' libeigen3-dev libfftw3-dev libhdf5-dev libfmt-dev zlib1g-dev
           libtomlplusplus-dev libcli11-dev
-          libglm-dev libpng-dev libcairo2-dev libfreetype-dev libgl-dev libegl-dev fonts-dejavu-core
+          libglm-dev libpng-dev libcairo2-dev libfreetype-dev libfontconfig-dev libgl-dev libegl-dev fonts-dejavu-core
+          fonts-dejavu-extra
           'libosmesa6|libegl1' 'libosmesa6|libgl1-mesa-dri' ffmpeg)
 
 # What the tests need besides.

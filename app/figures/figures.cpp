@@ -4,6 +4,8 @@
 #include "app/pictures/flow_picture.h"
 #include "app/pictures/pictures.h"
 
+#include "render/core/style.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +16,9 @@ namespace {
 void add_series(render::FigureInput& input, const std::vector<FigureSource>& sources) {
   const SharedScales scales = shared_scales(sources);
   std::vector<const QuantityRow*> rows;
-  for (const std::string& name : input.parameters.quantities) rows.push_back(&find_quantity(name));
+  const std::vector<std::string> only{std::string("inclination")};
+  for (const std::string& name : input.parameters.kind == "inclination" ? only : input.parameters.quantities)
+    rows.push_back(&find_quantity(name));
   input.time_factor = 1;  // the series bring their own
   input.time_symbol = scales.time.symbol;
   for (const FigureSource& source : sources)
@@ -26,6 +30,7 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
   settings.view.supersampling = std::max(settings.view.supersampling, 3);
   input.camera = settings.view.camera;
   const double pixels = render::dots_per_inch(input.parameters) / 72;
+  input.shows_field = render::find_style(settings.view.style).field || settings.view.colour_by != "order";
   constexpr int least = 16;  // px
   std::vector<Still> stills;
   const render::Sheet sheet = render::sheet_layout(input);
@@ -37,7 +42,9 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
                       .width = std::max(least, static_cast<int>(std::lround(p.width * pixels))),
                       .height = std::max(least, static_cast<int>(std::lround(p.height * pixels)))});
   }
-  input.stills = draw_stills(source.trajectory, settings, stills, options);
+  DrawnStills drawn = draw_stills(source.trajectory, settings, stills, options);
+  input.stills = std::move(drawn.images);
+  input.field = std::move(drawn.legend);
 }
 
 void add_flow(render::FigureInput& input, const FigureSource& source) {
@@ -46,10 +53,10 @@ void add_flow(render::FigureInput& input, const FigureSource& source) {
   const TimeUnit unit = time_unit(scene);
   input.flow = flow_picture(plans, scene, input.states.front(),
                             flow_request(plans, input.states.front(), input.parameters, input.length));
-  const std::string speed = input.parameters.frame == "vesicle" ? "in-plane |u − U|" : "in-plane |u|";
+  const std::string speed = input.parameters.frame == "vesicle" ? "in-plane |u\u00a0−\u00a0U|" : "in-plane |u|";
   if (unit.symbol != "t") {
     input.flow.speed_factor = 1 / (unit.factor * input.length);
-    input.flow.speed_label = speed + " / γ̇R_{0}";
+    input.flow.speed_label = speed + " /\u00a0γ̇R_{0}";
   } else {
     input.flow.speed_label = speed;
   }
@@ -58,7 +65,7 @@ void add_flow(render::FigureInput& input, const FigureSource& source) {
 }  // namespace
 
 bool takes_several(std::string_view kind) {
-  return kind == "time-series" || kind == "phase" || kind == "tank-treading";
+  return kind == "time-series" || kind == "inclination" || kind == "phase" || kind == "tank-treading";
 }
 
 render::Figure make_figure(const std::vector<FigureSource>& sources, const render::FigureParameters& parameters,
@@ -90,9 +97,6 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
       } else {
         input.plots = steady_plots(sources);
       }
-      break;
-    case render::FigureNeeds::all_states:
-      for (std::size_t k = 0; k < times.size(); ++k) take({k});
       break;
     case render::FigureNeeds::instants:
       take(render::chosen_states(times, parameters));

@@ -21,8 +21,9 @@ const std::vector<FigureRow>& figures() {
       {"snapshots", "a sheet of pictures at one scale, one panel an instant", FigureNeeds::stills, draw_snapshots},
       {"streamlines", "streamlines in a plane, of the whole flow, over its speed there (the part along the plane)",
        FigureNeeds::flow, draw_streamlines},
-      {"inclination", "angle between the flow and the longest axis in the shear plane against time",
-       FigureNeeds::all_states, draw_inclination},
+      {"inclination",
+       "angle between the flow and the longest axis in the shear plane against time, continued over ±90°",
+       FigureNeeds::series, draw_time_series},
       {"time-series", "chosen quantities against time, one panel each", FigureNeeds::series, draw_time_series},
       {"phase", "one quantity against another in the course of time", FigureNeeds::plots, draw_plots},
       {"spectra", "position and mean curvature, degree by degree", FigureNeeds::plots, draw_plots},
@@ -54,8 +55,28 @@ Page page_of(const FigureParameters& p) {
   if (font_size == 0 && page.width > 0)
     font_size = page.theme.height > 0 ? page.theme.text * page.width / page.theme.width
                                       : std::min(page.theme.text, page.width / 24);
-  page.theme = find_theme(p.theme, font_size);
+  page.theme = on_ground_named(find_theme(p.theme, font_size), p.ground);
+  page.theme.family = p.font == "serif" ? FontFamily::serif : FontFamily::sans;
   return page;
+}
+
+Drawing drawing_on(const Theme& theme, const FigureParameters& p, double width, double height,
+                   std::function<void(cairo_t*, const Font&)> paint) {
+  Drawing drawing;
+  drawing.width = width;
+  drawing.height = height;
+  drawing.paint = std::move(paint);
+  drawing.ground = theme.ground;
+  drawing.dots_per_inch = dots_per_inch(p);
+  drawing.transparent = theme.transparent;
+  drawing.family = theme.family;
+  drawing.outlines = p.text == "paths";
+  return drawing;
+}
+
+Marker group_marker(std::size_t group) {
+  constexpr std::array markers{Marker::dot, Marker::square, Marker::triangle, Marker::diamond, Marker::ring};
+  return markers[group % markers.size()];
 }
 
 std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters) {

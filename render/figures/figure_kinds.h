@@ -9,7 +9,6 @@ Figure draw_cross_sections(const FigureInput& input);
 Figure draw_overlay(const FigureInput& input);
 Figure draw_snapshots(const FigureInput& input);
 Figure draw_streamlines(const FigureInput& input);
-Figure draw_inclination(const FigureInput& input);
 Figure draw_time_series(const FigureInput& input);
 Figure draw_plots(const FigureInput& input);
 
