@@ -1,10 +1,16 @@
 #include "app/figures/figures.h"
 
+#include "app/base/message.h"
+#include "app/base/printable.h"
+#include "app/figures/phase_diagram.h"
 #include "app/figures/plots.h"
 #include "app/pictures/flow_picture.h"
 #include "app/pictures/pictures.h"
+#include "app/scene/scene_text.h"
 
 #include "render/core/style.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +71,8 @@ void add_flow(render::FigureInput& input, const FigureSource& source) {
 }  // namespace
 
 bool takes_several(std::string_view kind) {
-  return kind == "time-series" || kind == "inclination" || kind == "phase" || kind == "tank-treading";
+  return kind == "time-series" || kind == "inclination" || kind == "phase" || kind == "phase-diagram" ||
+         kind == "tank-treading";
 }
 
 render::Figure make_figure(const std::vector<FigureSource>& sources, const render::FigureParameters& parameters,
@@ -81,8 +88,11 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
   input.length = length_of(trajectory);
   std::vector<double> times;
   for (std::int64_t k = 0; k < trajectory.count(); ++k) times.push_back(trajectory.time(k));
-  const auto take = [&](const std::vector<std::size_t>& chosen) {
-    for (const std::size_t k : chosen) input.states.push_back(trajectory.state(static_cast<std::int64_t>(k)));
+  const auto take = [&](const std::vector<double>& chosen) {
+    for (const double time : chosen) {
+      input.states.push_back(state_at(trajectory, time));
+      input.states.back().time = std::min(time, times.back());
+    }
   };
   switch (kind.needs) {
     case render::FigureNeeds::series:
@@ -92,25 +102,28 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
       if (kind.name == "phase") {
         input.plots = phase_plots(sources, parameters);
       } else if (kind.name == "spectra") {
-        take(render::chosen_states(times, parameters));
+        take(render::chosen_times(times, parameters));
         input.plots = spectra_plots(input);
       } else {
         input.plots = steady_plots(sources);
       }
       break;
     case render::FigureNeeds::instants:
-      take(render::chosen_states(times, parameters));
+      take(render::chosen_times(times, parameters));
       break;
     case render::FigureNeeds::stills:
-      take(render::chosen_states(times, parameters));
+      take(render::chosen_times(times, parameters));
       add_stills(input, first, options);
       break;
     case render::FigureNeeds::flow:
       if (parameters.times.empty())
-        take({times.size() - 1});
+        take({times.back()});
       else
-        take({render::chosen_states(times, parameters).front()});
+        take({render::chosen_times(times, parameters).front()});
       add_flow(input, first);
+      break;
+    case render::FigureNeeds::diagram:
+      input.diagram = phase_diagram(sources, parameters);
       break;
   }
   return kind.draw(input);
@@ -120,7 +133,19 @@ std::vector<std::filesystem::path> draw_figure(const std::vector<FigureSource>& 
                                                const render::FigureParameters& parameters,
                                                const std::filesystem::path& stem, const sim::FileWriter& write,
                                                const Options& options) {
-  return render::write_figure(make_figure(sources, parameters, options), stem, {}, write);
+  render::Figure figure = make_figure(sources, parameters, options);
+  std::string titles;
+  std::string& subject = figure.drawing.subject;
+  for (const FigureSource& source : sources) {
+    const std::string title = printable(source.settings.scene.title);
+    if (!title.empty() && titles.find(title) == std::string::npos)
+      titles.append(titles.empty() ? "" : "; ").append(title);
+    subject.append(subject.empty() ? "" : "\n").append(write_scene(source.settings.scene));
+  }
+  figure.drawing.title = fmt::format("{}{}{}", parameters.kind, titles.empty() ? "" : ": ", titles);
+  if (const std::string missing = render::missing_letters(figure.drawing); !missing.empty())
+    tell(fmt::format("no font has the letters '{}': they are drawn as empty boxes", missing));
+  return render::write_figure(figure, stem, {}, write);
 }
 
 }  // namespace app

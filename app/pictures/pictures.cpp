@@ -103,7 +103,9 @@ render::Image draw_picture(Studio& studio, const Production& production, double 
     const sim::State state = state_at(panel.source.trajectory, time);
     parts.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
-  return parts.size() == 1 ? std::move(parts.front()) : joined(production, parts);
+  render::Image whole = parts.size() == 1 && !production.plots ? std::move(parts.front()) : joined(production, parts);
+  if (production.plots) add_plots(whole, *production.plots, time);
+  return whole;
 }
 
 DrawnStills draw_stills(const sim::TrajectoryReader& trajectory, const Settings& settings,

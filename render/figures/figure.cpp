@@ -30,6 +30,9 @@ const std::vector<FigureRow>& figures() {
       {"tank-treading",
        "angle and frequency of tank-treading against reduced volume, one trajectory a point, beside the literature",
        FigureNeeds::plots, draw_plots},
+      {"phase-diagram",
+       "motion of vesicles over two parameters in which their scenes differ, with their sections in the course of it",
+       FigureNeeds::diagram, draw_phase_diagram},
   };
   return rows;
 }
@@ -79,30 +82,23 @@ Marker group_marker(std::size_t group) {
   return markers[group % markers.size()];
 }
 
-std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters) {
-  std::vector<std::size_t> chosen;
+std::vector<double> chosen_times(const std::vector<double>& state_times, const FigureParameters& parameters) {
   const std::size_t count = state_times.size();
-  if (count == 0) return chosen;
-  if (!parameters.times.empty()) {
-    for (const double time : parameters.times) {
-      const double end = state_times.back();
-      if (!(time >= 0 && time <= end * (1 + 1e-9))) {
-        const auto [last, wanted] = sim::told_apart(end, time, 6);
-        throw std::invalid_argument(
-            fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {} for figure.times", last, wanted));
-      }
-      const auto nearest = std::min_element(state_times.begin(), state_times.end(), [&](double a, double b) {
-        return std::abs(a - time) < std::abs(b - time);
-      });
-      chosen.push_back(static_cast<std::size_t>(nearest - state_times.begin()));
-    }
-    return chosen;
+  if (count == 0) return {};
+  for (const double time : parameters.times) {
+    const double end = state_times.back();
+    if (time >= 0 && time <= end * (1 + 1e-9)) continue;
+    const auto [last, wanted] = sim::told_apart(end, time, 6);
+    throw std::invalid_argument(
+        fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {} for figure.times", last, wanted));
   }
+  if (!parameters.times.empty()) return parameters.times;
+  std::vector<double> chosen;
   const std::size_t panels =
       std::clamp<std::size_t>(static_cast<std::size_t>(std::max(parameters.panels, 1)), 1, count);
   for (std::size_t k = 0; k < panels; ++k) {
     const double place = panels == 1 ? 0 : static_cast<double>(k * (count - 1)) / static_cast<double>(panels - 1);
-    chosen.push_back(static_cast<std::size_t>(std::lround(place)));
+    chosen.push_back(state_times[static_cast<std::size_t>(std::lround(place))]);
   }
   return chosen;
 }

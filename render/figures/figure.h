@@ -63,6 +63,21 @@ struct FlowPicture {
   std::vector<std::string> remarks;  ///< first lines of the CSV
 };
 
+/// One vesicle in a phase diagram.
+struct DiagramPoint {
+  double x = 0, y = 0;
+  std::size_t kind = 0;  ///< of its motion: number in Diagram::kinds
+  /// Sections at some instants of its motion, the last of which is drawn full; relative to its centre, R0.
+  std::vector<std::vector<ClosedCurve>> outlines;
+};
+/// Motions over two parameters.
+struct Diagram {
+  std::string x, y;                ///< labels of the axes
+  std::vector<std::string> kinds;  ///< of motion, in the legend
+  std::vector<DiagramPoint> points;
+  std::string csv;
+};
+
 struct FigureInput {
   std::vector<sim::State> states;   ///< those to show
   std::vector<std::string> labels;  ///< one per vesicle, for the legend; may be empty
@@ -72,6 +87,7 @@ struct FigureInput {
   bool shows_field = false;         ///< they show a field, whose bar needs room
   std::optional<Legend> field;      ///< its bar
   FlowPicture flow;                 ///< of "streamlines"
+  Diagram diagram;                  ///< of "phase-diagram"
   std::string time_symbol = "t";    ///< "γ̇t"
   double time_factor = 1;           ///< shown time = this x State::time
   double length = 1;                ///< area radius: lengths are shown in units of it
@@ -86,7 +102,7 @@ struct Figure {
 };
 
 /// The input of a kind of figure.
-enum class FigureNeeds { instants, series, plots, stills, flow };
+enum class FigureNeeds { instants, series, plots, stills, flow, diagram };
 
 struct FigureRow {
   std::string_view name;
@@ -112,9 +128,9 @@ struct Page {
 };
 Page page_of(const FigureParameters& parameters);
 
-/// `panels` indices spread evenly over `count` states, including first and last; or, with times, the nearest states.
-/// Throws std::invalid_argument for a time beyond the last state.
-std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters);
+/// Instants of a figure: `times`, or those of `panels` states spread evenly, first and last among them. Throws
+/// std::invalid_argument for a time beyond the last state.
+std::vector<double> chosen_times(const std::vector<double>& state_times, const FigureParameters& parameters);
 
 /// The plane of a figure; origin: the given point, or the vesicle's centroid. Its axes lie along x and z as far as
 /// possible.

@@ -11,6 +11,7 @@ Figure draw_snapshots(const FigureInput& input);
 Figure draw_streamlines(const FigureInput& input);
 Figure draw_time_series(const FigureInput& input);
 Figure draw_plots(const FigureInput& input);
+Figure draw_phase_diagram(const FigureInput& input);
 
 /// a..z, then aa, ab, ...
 std::string letter(std::size_t k);

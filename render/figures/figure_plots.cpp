@@ -36,7 +36,9 @@ std::string csv_of(const std::vector<Plot>& plots) {
 
 constexpr std::size_t unmarked = 1;  // groups: a single one needs no marks
 
-Figure against_time(const FigureInput& input, const std::vector<Series>& all, std::string csv) {
+}  // namespace
+
+std::vector<Plot> plots_against_time(const std::vector<Series>& all, const std::string& time_symbol) {
   std::vector<Plot> plots;
   std::vector<std::string> groups;
   for (const Series& s : all)
@@ -46,7 +48,7 @@ Figure against_time(const FigureInput& input, const std::vector<Series>& all, st
     if (plot == plots.end()) {
       plots.emplace_back();
       plot = plots.end() - 1;
-      plot->x = {.label = input.time_symbol, .grid = true};
+      plot->x = {.label = time_symbol, .grid = true};
       plot->y = {.label = s.axis, .scale = s.scale, .grid = true};
     }
     std::vector<std::string> parts;
@@ -67,17 +69,15 @@ Figure against_time(const FigureInput& input, const std::vector<Series>& all, st
     }
     plot->curves.push_back(std::move(curve));
   }
-  return arranged(input, plots, true, std::move(csv));
+  return plots;
 }
-
-}  // namespace
 
 Figure draw_time_series(const FigureInput& input) {
   if (input.series.empty()) throw std::invalid_argument("a figure of time series needs at least one series");
   std::vector<Series> all = input.series;
   for (Series& s : all)
     for (double& t : s.times) t *= input.time_factor;
-  return against_time(input, all, csv_of(all));
+  return arranged(input, plots_against_time(all, input.time_symbol), true, csv_of(all));
 }
 
 Figure draw_plots(const FigureInput& input) {

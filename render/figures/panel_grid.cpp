@@ -229,7 +229,8 @@ std::optional<Eigen::Vector2d> place_within(const PlacedPlot& p, const LaidLegen
 }
 
 /// Placed with a theme; nothing when the page is too small for it.
-std::optional<PlacedPlots> placed_with(const Theme& theme, const Grid& grid, const std::vector<Plot>& plots) {
+std::optional<PlacedPlots> placed_with(const Theme& theme, const Grid& grid, const std::vector<Plot>& plots,
+                                       bool letters) {
   const Ruler ruler(theme.family);
   PlacedPlots result;
   result.theme = theme;
@@ -244,7 +245,7 @@ std::optional<PlacedPlots> placed_with(const Theme& theme, const Grid& grid, con
       p.axes.x.numbers = false;
       p.axes.x.label.clear();
     }
-    if (count > 1) p.letter = fmt::format("({})", letter(k));
+    if (letters && count > 1) p.letter = fmt::format("({})", letter(k));
     set_ranges(p, grid.stacked);
     p.panel.width = grid.width / static_cast<double>(grid.columns) * 0.8;  // to begin with
     p.panel.height = grid.aspect() * p.panel.width;
@@ -314,18 +315,44 @@ void draw_one(const Pen& pen, const PlacedPlot& p) {
 }  // namespace
 
 PlacedPlots placed_plots(const FigureParameters& parameters, const Page& page, const std::vector<Plot>& plots,
-                         bool stacked) {
+                         bool stacked, bool letters) {
   const Grid grid = grid_of(parameters, page, plots.size(), stacked);
   Theme theme = page.theme;
   constexpr double least = 2;  // pt: below it nobody reads
   for (; theme.text > least; theme = scaled(theme, 0.9))
-    if (std::optional<PlacedPlots> placed = placed_with(theme, grid, plots)) return std::move(*placed);
+    if (std::optional<PlacedPlots> placed = placed_with(theme, grid, plots, letters)) return std::move(*placed);
   throw std::invalid_argument("a figure of this size has no room for its panels and their text");
 }
 
 void draw_plots(const Pen& pen, const PlacedPlots& placed) {
   for (const PlacedPlot& p : placed.plots) draw_one(pen, p);
   draw_legend(pen, placed.legend, placed.legend_at.x(), placed.legend_at.y());
+}
+
+void draw_instant(const Pen& pen, const PlacedPlots& placed, double x) {
+  cairo_t* cairo = pen.cairo;
+  for (const PlacedPlot& p : placed.plots) {
+    const double at = std::clamp(x, p.panel.x.low, p.panel.x.high), page_x = p.panel.page_x(at);
+    set_colour(pen, pen.theme.ink, 0.55);
+    cairo_set_line_width(cairo, 1.1 * pen.theme.line);
+    cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT);
+    cairo_move_to(cairo, page_x, p.panel.top);
+    cairo_line_to(cairo, page_x, p.panel.top + p.panel.height);
+    cairo_stroke(cairo);
+    for (const Curve& curve : p.plot.curves) {
+      if (curve.faint) continue;
+      const Points c = in_panel(p.plot, curve);
+      const auto after = std::lower_bound(c.first.begin(), c.first.end(), at);
+      const auto k = static_cast<std::size_t>(after - c.first.begin());
+      if (k >= c.first.size() || (k == 0 && c.first[0] > at)) continue;  // it has ended, or not begun
+      const double share = k == 0 ? 1 : (at - c.first[k - 1]) / (c.first[k] - c.first[k - 1]);
+      const double y = k == 0 ? c.second[0] : c.second[k - 1] + share * (c.second[k] - c.second[k - 1]);
+      if (!std::isfinite(y) || y < p.panel.y.low || y > p.panel.y.high) continue;
+      const std::vector<double> xs{at}, ys{y};
+      draw_markers(pen, p.panel, xs, ys, Marker::dot, pen.theme.ground, 2.7);
+      draw_markers(pen, p.panel, xs, ys, Marker::dot, colour_of(pen.theme, curve), 1.9);
+    }
+  }
 }
 
 Figure arranged(const FigureInput& input, const std::vector<Plot>& plots, bool stacked, std::string csv) {

@@ -22,10 +22,17 @@ struct PlacedPlots {
   double width = 0, height = 0;  ///< of the page, pt
 };
 /// Panels row by row on the page. stacked: they share their axis of x, which is numbered under the lowest of each
-/// column. Text is made smaller where the page is too small for it. At least one plot.
+/// column. letters: "(a)", "(b)" above panels, where there are several. Text is made smaller where the page is too
+/// small for it. At least one plot.
 PlacedPlots placed_plots(const FigureParameters& parameters, const Page& page, const std::vector<Plot>& plots,
-                         bool stacked);
+                         bool stacked, bool letters = true);
 void draw_plots(const Pen& pen, const PlacedPlots& placed);
+
+/// A line at an abscissa in each panel, and dots where it meets curves.
+void draw_instant(const Pen& pen, const PlacedPlots& placed, double x);
+
+/// Panels of quantities against time: an axis each, groups of curves told apart by colours and marks.
+std::vector<Plot> plots_against_time(const std::vector<Series>& series, const std::string& time_symbol);
 
 /// The same as a figure on the page of the input. csv: the data of the figure, as it is.
 Figure arranged(const FigureInput& input, const std::vector<Plot>& plots, bool stacked, std::string csv);

@@ -3,7 +3,7 @@
 #include "render/figures/plot_marks.h"
 #include "render/image/image.h"
 
-#include "surfaces.h"
+#include "diagrams.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
@@ -52,6 +52,7 @@ render::FigureInput input() {
   curve.marker = render::Marker::diamond;
   plot.curves = {curve};
   in.plots = {plot, plot};
+  in.diagram = surfaces::diagram(3);
   for (const render::SheetPanel& p : render::sheet_layout(in).panels)
     in.stills.emplace_back(static_cast<int>(p.width), static_cast<int>(p.height), 3);
   in.flow.x = {-4, 4};
@@ -130,20 +131,20 @@ TEST_CASE("the CSV of cross-sections holds points of the sections") {
   }
 }
 
-TEST_CASE("chosen states are spread evenly or lie nearest to the wanted times") {
+TEST_CASE("instants of a figure are spread evenly over the saved states, or those that were asked for") {
   const std::vector<double> times{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   render::FigureParameters p;
   p.panels = 3;
-  CHECK(render::chosen_states(times, p) == std::vector<std::size_t>{0, 5, 10});
+  CHECK(render::chosen_times(times, p) == std::vector<double>{0, 5, 10});
   p.panels = 1;
-  CHECK(render::chosen_states(times, p) == std::vector<std::size_t>{0});
+  CHECK(render::chosen_times(times, p) == std::vector<double>{0});
   p.panels = 40;
-  CHECK(render::chosen_states(times, p).size() == 11);
+  CHECK(render::chosen_times(times, p).size() == 11);
   p.times = {2.2, 9.8};
-  CHECK(render::chosen_states(times, p) == std::vector<std::size_t>{2, 10});
+  CHECK(render::chosen_times(times, p) == p.times);
   p.times = {2.2, 99};
-  CHECK_THROWS_WITH(render::chosen_states(times, p), Catch::Contains("there is no t = 99"));
-  CHECK(render::chosen_states({}, p).empty());
+  CHECK_THROWS_WITH(render::chosen_times(times, p), Catch::Contains("there is no t = 99"));
+  CHECK(render::chosen_times({}, p).empty());
 }
 
 TEST_CASE("ticks are round numbers inside the range") {
@@ -311,12 +312,12 @@ TEST_CASE("numbers of an axis differ from each other, whatever their size and of
 TEST_CASE("instants beyond the trajectory are refused, not moved") {
   render::FigureParameters p;
   p.times = {0.5, 2.5};
-  CHECK_THROWS_WITH(render::chosen_states({0, 1, 2}, p),
+  CHECK_THROWS_WITH(render::chosen_times({0, 1, 2}, p),
                     Catch::Contains("goes from t = 0 to t = 2") && Catch::Contains("2.5"));
   p.times = {std::nan("")};
-  CHECK_THROWS(render::chosen_states({0, 1, 2}, p));
+  CHECK_THROWS(render::chosen_times({0, 1, 2}, p));
   p.times = {2};
-  CHECK(render::chosen_states({0, 1, 2}, p) == std::vector<std::size_t>{2});
+  CHECK(render::chosen_times({0, 1, 2}, p) == std::vector<double>{2});
 }
 
 TEST_CASE("text of a figure is text in PDF and SVG, and the PNG says its dots per inch") {

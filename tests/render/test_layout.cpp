@@ -1,7 +1,7 @@
 // The layout of figures: no text crosses another text, a curve, a frame or the edge of the page, at any width.
 #include "render/figures/figure.h"
 
-#include "surfaces.h"
+#include "diagrams.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
@@ -92,6 +92,7 @@ render::FigureInput input_of(const render::FigureRow& row, const std::string& pa
   if (row.name == "inclination")
     std::erase_if(in.series, [](const render::Series& s) { return s.scale != render::Scale::degrees; });
   in.plots = plots_of(groups);
+  if (row.needs == render::FigureNeeds::diagram) in.diagram = surfaces::diagram(groups + 1);
   if (row.name == "phase") in.plots.resize(1);
   if (row.needs == render::FigureNeeds::stills) {
     in.shows_field = groups > 1;
