@@ -92,8 +92,8 @@ constexpr int most_told_apart = 8;  // vesicles of one trajectory: more are a bu
 
 /// How curve `c` of vesicle `v` looks, of `curves` and `vesicles` in all.
 render::Series empty_series(const FigureSource& source, const char* curve, std::size_t curves, int v, int vesicles) {
-  const auto joined = [](std::string text, const std::string& word) {
-    return word.empty() ? text : text + (text.empty() ? "" : ", ") + word;
+  const auto joined = [](const std::string& text, const std::string& word) {
+    return fmt::format("{}{}{}", text, text.empty() || word.empty() ? "" : ", ", word);
   };
   const std::string vesicle = vesicles > 1 ? fmt::format("vesicle {}", v) : "";
   render::Series series;

@@ -145,7 +145,7 @@ Font font_of(const Drawing& drawing, Font::Use use) {
 
 /// Paints without a page; the font holds the texts.
 Font texts_kept(const Drawing& drawing) {
-  const Font font(Font::Use::kept, drawing.family, true);
+  Font font(Font::Use::kept, drawing.family, true);
   const Surface surface(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));
   paint(surface.get(), drawing, 1, font, "a page without a file");
   return font;

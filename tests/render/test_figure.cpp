@@ -15,6 +15,7 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
 
 using sim::Vec3;
 using surfaces::turn;
@@ -355,4 +356,104 @@ TEST_CASE("text of a figure is text in PDF and SVG, and the PNG says its dots pe
   CHECK(number(at + 4) == 11811);  // 300 / 0.0254 m
   CHECK(number(at + 8) == 11811);
   CHECK(png[at + 12] == 1);
+}
+
+TEST_CASE("variables are in italics, words, numbers, units and names of operators are not") {
+  const auto italics = [](const char* text) {
+    std::string found;
+    for (const render::TextRun& run : render::text_runs(text))
+      if (run.italic) found += (found.empty() ? "" : " ") + run.text;
+    return found;
+  };
+  CHECK(italics("γ̇t = 2.5") == "γ̇t");
+  CHECK(italics("inclination θ (°)") == "θ");
+  CHECK(italics("E / 8πκ") == "E κ");
+  CHECK(italics("σR_{0}^{2}/κ_{b}") == "σR κ");
+  CHECK(italics("(dθ/dt) / γ̇") == "θ t γ̇");
+  CHECK(italics("γ̇Δt") == "γ̇ t");
+  CHECK(italics("E_{n} of the mean curvature") == "E n");
+  CHECK(italics("D = (L − B) / (L + B)") == "D L B L B");
+  CHECK(italics("(a)  a panel of a figure, 5 m wide, e.g. run B") == "");
+  CHECK(italics("Αριστοτέλης, a vesicle's λ") == "λ");
+}
+
+TEST_CASE("text as paths leaves no text in SVG and no font in PDF, and looks the same") {
+  const support::TemporaryFolder folder;
+  render::FigureInput in = input();
+  const render::Figure text = render::find_figure("overlay").draw(in);
+  in.parameters.text = "paths";
+  const render::Figure paths = render::find_figure("overlay").draw(in);
+  const auto written = render::write_figure(paths, folder / "paths"),
+             usual = render::write_figure(text, folder / "text");
+  CHECK(support::read_file(usual[1]).find("<text") != std::string::npos);
+  CHECK(support::read_file(written[1]).find("<text") == std::string::npos);
+  CHECK(support::read_file(written[2]).find("FontFile") == std::string::npos);
+  CHECK((support::read_file(written[0]) == support::read_file(usual[0])));
+}
+
+TEST_CASE("title and scene of a figure are in all of its pictures") {
+  const support::TemporaryFolder folder;
+  render::Figure figure = render::find_figure("overlay").draw(input());
+  figure.drawing.title = "overlay: shear & <more>";
+  figure.drawing.subject = "[flow]\nrate = 1";
+  const auto files = render::write_figure(figure, folder / "f");
+  const auto text = render::read_png_text(files[0]);
+  const auto holds = [&](const char* key, const std::string& value) {
+    return std::find(text.begin(), text.end(), std::pair<std::string, std::string>(key, value)) != text.end();
+  };
+  CHECK(holds("Title", figure.drawing.title));
+  CHECK(holds("Description", figure.drawing.subject));
+  CHECK_THAT(support::read_file(files[1]), Catch::Contains("<title>overlay: shear &amp; &lt;more&gt;</title>"));
+  CHECK_THAT(support::read_file(files[2]),
+             Catch::Contains("/Title (overlay: shear & <more>)") &&
+                 Catch::Contains("<FEFF005B0066006C006F0077005D000A"));  // UTF-16: "[flow]" and a new line
+}
+
+TEST_CASE("a page without ground is transparent, another ground is where nothing is drawn, and ink is seen on it") {
+  const support::TemporaryFolder folder;
+  render::FigureInput in = input();
+  in.parameters.ground = "transparent";
+  render::write_drawing_png(folder / "f.png", render::find_figure("time-series").draw(in).drawing);
+  const render::Image clear = render::read_png(folder / "f.png").image;
+  REQUIRE(clear.channels == 4);
+  CHECK(clear.at(0, 0)[3] == 0);
+  int solid = 0;
+  for (int y = 0; y < clear.height; ++y)
+    for (int x = 0; x < clear.width; ++x) solid += clear.at(x, y)[3] == 255;
+  CHECK(solid > 1000);
+  for (const char* ground : {"white", "dark", "#204080", "#e0f0e0"}) {
+    INFO(ground);
+    const render::Theme theme = render::on_ground_named(render::find_theme("paper"), ground);
+    CHECK(std::abs(theme.ink.g - theme.ground.g) > 0.6);
+    in.parameters.ground = ground;
+    render::write_drawing_png(folder / "g.png", render::find_figure("time-series").draw(in).drawing);
+    const render::Image image = render::read_png(folder / "g.png").image;
+    CHECK(std::abs(image.at(0, 0)[1] - 255 * theme.ground.g) < 1.01);
+  }
+  CHECK_THAT(support::message_of([] { render::on_ground_named(render::find_theme("paper"), "drak"); }),
+             Catch::Contains("did you mean 'dark'"));
+}
+
+TEST_CASE("letters that no font has are told") {
+  render::Drawing drawing{200, 60, nullptr, render::white, 300};
+  drawing.paint = [](cairo_t* cairo, const render::Font& font) {
+    render::draw_text(cairo, font, 12, 10, 30, "λ = 1, \U0010fffd\U0010fffd");  // private use
+  };
+  CHECK(render::missing_letters(drawing) == "\U0010fffd");
+}
+
+TEST_CASE("a legend within a panel lies where no curve runs, or nowhere") {
+  render::Panel panel;
+  panel.x = panel.y = {0, 1};
+  using Curves = std::vector<std::pair<std::vector<double>, std::vector<double>>>;
+  const Curves diagonal{{{0, 1}, {0, 1}}},
+      cross{{{0, 1}, {0, 1}}, {{0, 1}, {1, 0}}, {{0.5, 0.5}, {0, 1}}, {{0, 1}, {0.5, 0.5}}};
+  const auto place = render::free_place(panel, {40, 20}, diagonal, 2);
+  REQUIRE(place.has_value());
+  // A line from the lower left to the upper right: the nearest corner of the rectangle is farther from it than 2 pt.
+  const double apart =
+      std::min(std::abs(place->x() + 40 - (100 - (place->y() + 20))), std::abs(place->x() - (100 - place->y())));
+  CHECK(apart / std::sqrt(2.0) >= 2);
+  CHECK_FALSE(render::free_place(panel, {60, 40}, cross, 2).has_value());
+  CHECK_FALSE(render::free_place(panel, {101, 5}, {}, 0).has_value());
 }
