@@ -12,16 +12,17 @@ build=$root/build/release
 # What the program needs. Where names are joined by '|', the first that the system offers is enough.
 packages=(g++ cmake ninja-build 'pkgconf|pkg-config' libeigen3-dev libfftw3-dev libhdf5-dev libfmt-dev zlib1g-dev
           libtomlplusplus-dev libcli11-dev
-          libglm-dev libpng-dev libcairo2-dev libfreetype-dev libgl-dev libegl-dev fonts-dejavu-core
+          libglm-dev libpng-dev libcairo2-dev libfreetype-dev libfontconfig-dev libgl-dev libegl-dev fonts-dejavu-core
+          fonts-dejavu-extra
           'libosmesa6|libegl1' 'libosmesa6|libgl1-mesa-dri' ffmpeg)
 
 # What the tests need besides.
 test_packages=(catch2 python3)
 
 # What some tests need: the other back end of OpenGL, trajectories and meshes read back, benchmarks, fuzzing, a processor
-# without AVX2, layout and mistakes of the code. Where one of these cannot be installed, its tests are skipped.
+# without AVX2, layout and mistakes of the code, the text of PDF files. Where one of these cannot be installed, its tests are skipped.
 optional_packages=(libosmesa6 libegl1 libgl1-mesa-dri libbenchmark-dev python3-h5py python3-vtk9 clang libclang-rt-dev
-                   qemu-user clang-format clang-tidy)
+                   qemu-user clang-format clang-tidy poppler-utils)
 
 usage() {
   sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"

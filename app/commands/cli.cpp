@@ -241,6 +241,19 @@ constexpr OptionRow option_rows[] = {
               "of numbers and legends, points")
            ->type_name("PT");
      }},
+    {"font",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<std::string>(
+              "--font", [&o](const std::string& s) { o.set.push_back("figure.font=" + s); }, "sans or serif")
+           ->type_name("NAME");
+     }},
+    {"text",
+     [](CLI::App& app, Options& o) {
+       app.add_option_function<std::string>(
+              "--text", [&o](const std::string& s) { o.set.push_back("figure.text=" + s); },
+              "of PDF and SVG: text, which can be searched and edited, or paths, its outlines")
+           ->type_name("AS");
+     }},
     {"export",
      [](CLI::App& app, Options& o) {
        app.add_option("--csv", o.csv, "write a row per saved state and vesicle; - is standard output")

@@ -7,6 +7,7 @@
 #include "app/base/result_files.h"
 #include "app/commands/commands.h"
 #include "app/figures/figures.h"
+#include "app/figures/movie_plots.h"
 #include "app/pictures/frames.h"
 #include "app/pictures/workers.h"
 #include "app/scene/output.h"
@@ -38,6 +39,21 @@ Settings scene_of(const sim::TrajectoryReader& trajectory, const fs::path& path,
   return changed;
 }
 
+/// With names that tell several apart.
+std::vector<FigureSource> figure_sources(const std::vector<sim::TrajectoryReader>& trajectories,
+                                         const std::vector<Settings>& settings, const std::vector<fs::path>& paths) {
+  std::vector<sim::Scene> scenes;
+  std::vector<std::string> names;
+  for (const fs::path& path : paths) names.push_back(path.string());
+  for (const Settings& one : settings) scenes.push_back(one.scene);
+  if (scenes.size() > 1) names = distinct_names(scenes, names);
+  std::vector<FigureSource> sources;
+  for (std::size_t k = 0; k < trajectories.size(); ++k)
+    sources.push_back({trajectories[k], settings[k], trajectories.size() > 1 ? printable(names[k]) : std::string(),
+                       paths[k].string()});
+  return sources;
+}
+
 }  // namespace
 
 int render(const Options& options) {
@@ -49,6 +65,7 @@ int render(const Options& options) {
   }
   std::vector<PictureSource> sources;
   for (std::size_t k = 0; k < trajectories.size(); ++k) sources.push_back({trajectories[k], settings[k]});
+  const std::vector<FigureSource> curves = figure_sources(trajectories, settings, options.inputs);
   const fs::path& path = options.inputs.front();
   const fs::path here = path.has_parent_path() ? path.parent_path() : ".";
 
@@ -58,7 +75,7 @@ int render(const Options& options) {
     ResultFiles files(options.inputs, options.force);
     files.require(still);
     limit_drawing_threads(options.jobs);
-    render_still(sources, *options.time, still, files, options);
+    render_still(sources, *options.time, still, files, options, movie_plots(curves));
     files.settle();
     if (!options.quiet) fmt::print("{}\n", printable(still.string()));
     return 0;
@@ -97,7 +114,7 @@ int render(const Options& options) {
   const FolderLock lock(folder, options.shard, options.shards);
   OwnedFiles files(folder);
   limit_drawing_threads(options.jobs);
-  const FrameReport report = render_frames(sources, files, options);
+  const FrameReport report = render_frames(sources, files, options, movie_plots(curves));
   if (report.interrupted) return stopped();
   if (!options.quiet) {
     fmt::print("{}: {} frames drawn, {} kept\n", printable((folder / "frames").string()), report.drawn + by_processes,
@@ -130,15 +147,9 @@ int figure(const Options& options) {
 
   // Curves of several trajectories share a figure; pictures of states get one each.
   std::vector<std::vector<FigureSource>> sets;
-  std::vector<sim::Scene> scenes;
-  std::vector<std::string> names;
-  for (const fs::path& path : options.inputs) names.push_back(path.string());
-  for (const Settings& one : settings) scenes.push_back(one.scene);
-  if (scenes.size() > 1) names = distinct_names(scenes, names);
-  for (std::size_t k = 0; k < trajectories.size(); ++k) {
-    const std::string name = trajectories.size() > 1 ? printable(names[k]) : std::string();
+  for (FigureSource& source : figure_sources(trajectories, settings, options.inputs)) {
     if (sets.empty() || !takes_several(options.word)) sets.emplace_back();
-    sets.back().push_back({trajectories[k], settings[k], name, options.inputs[k].string()});
+    sets.back().push_back(std::move(source));
   }
   ResultFiles files(options.inputs, options.force);
   std::vector<fs::path> stems;

@@ -7,6 +7,7 @@
 #include "app/export/simulation.h"
 #include "app/export/summary.h"
 #include "app/figures/figures.h"
+#include "app/figures/movie_plots.h"
 #include "app/pictures/frames.h"
 #include "app/scene/output.h"
 #include "app/scene/scene_file.h"
@@ -101,7 +102,7 @@ int run(const Options& options) {
   // A simulation that stopped early is drawn as far as it went: that is where one looks for the reason.
   const sim::TrajectoryReader reader(trajectory);
   limit_drawing_threads(options.jobs);
-  const FrameReport frames = render_frames({{reader, settings}}, files, options);
+  const FrameReport frames = render_frames({{reader, settings}}, files, options, movie_plots({{reader, settings, {}}}));
   if (frames.interrupted) {
     tell(fmt::format("interrupted; {} frames are in '{}'; the same command continues", frames.drawn + frames.kept,
                      (folder / "frames").string()));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace app {
@@ -60,9 +61,9 @@ std::string legend_of(const Study& study, const StudyRow& row, bool alone) {
 /// A line of the order of theory through the first point of the curve.
 render::Curve guide(const Study& study, const render::Curve& curve, double order) {
   render::Curve line;
-  line.name = fmt::format("order {:g} of theory", order);
-  line.csv_name = line.name;
-  line.dashed = true;
+  line.part = fmt::format("order {:g} of theory", order);
+  line.csv_name = line.part;
+  line.dash = 1;
   line.colour = curve.colour;
   const double h0 = study.what.smallness(curve.x.front());
   for (const StudyRun& run : study.runs) {
@@ -84,17 +85,6 @@ render::Range window_of(std::vector<double> varied, bool logarithmic) {
   return {left, right};
 }
 
-/// Whole decades of the errors, with room above them for so many lines of the legend.
-render::Range with_room(const render::Plot& plot, std::size_t lines) {
-  std::vector<double> all;
-  for (const render::Curve& curve : plot.curves) all.insert(all.end(), curve.y.begin(), curve.y.end());
-  render::Range range = render::decades(all);
-  constexpr double line = 0.11;  // share of a panel's height
-  const double share = std::min(0.6, line * static_cast<double>(lines));
-  range.high += 0.6 * range.size() * share / (1 - share);  // the corner of the legend is the emptier one
-  return range;
-}
-
 }  // namespace
 
 render::Figure figure_of(const Study& study, const render::FigureParameters& parameters) {
@@ -104,7 +94,10 @@ render::Figure figure_of(const Study& study, const render::FigureParameters& par
   std::vector<double> varied;
   for (const StudyRun& run : study.runs) varied.push_back(run.value);
   const render::Range window = window_of(varied, study.what.falls);
+  constexpr std::array full{render::Marker::dot, render::Marker::square, render::Marker::triangle,
+                            render::Marker::diamond};
   std::vector<render::Plot> plots;
+  std::size_t colours = 0;
   for (const Group& group : groups_of(study)) {
     render::Plot plot;
     plot.x = {.label = std::string(study.what.symbol),
@@ -115,11 +108,11 @@ render::Figure figure_of(const Study& study, const render::FigureParameters& par
     for (const StudyRow* row : group.rows) {
       const Convergence& c = row->convergence;
       render::Curve curve;
-      curve.name = legend_of(study, *row, group.rows.size() == 1);
+      curve.part = legend_of(study, *row, group.rows.size() == 1);
       curve.csv_name = row->result.name;
-      curve.colour = plot.curves.size();
+      curve.colour = colours++;  // one colour one result, over all panels
       curve.line = c.limit.has_value();
-      curve.marker = c.limit ? render::Marker::dot : render::Marker::ring;
+      curve.marker = c.limit ? full[plot.curves.size() % full.size()] : render::Marker::ring;
       for (std::size_t k = 0; k < study.runs.size(); ++k) {
         if (!c.known(k) || !(c.errors[k] > 0)) continue;
         curve.x.push_back(study.runs[k].value);
@@ -128,13 +121,11 @@ render::Figure figure_of(const Study& study, const render::FigureParameters& par
       plot.curves.push_back(std::move(curve));
     }
     if (expected) plot.curves.push_back(guide(study, plot.curves.front(), *expected));
-    plot.legend = study.what.falls ? render::Corner::upper_left : render::Corner::upper_right;
-    plot.y_range = with_room(plot, group.rows.size() + (expected ? 1 : 0));
     plots.push_back(std::move(plot));
   }
   if (plots.empty()) return {};
   input.parameters.columns = plots.size() == 1 ? 1 : 2;
-  return render::arranged(input, std::move(plots), false, csv_of(study));
+  return render::arranged(input, plots, false, csv_of(study));
 }
 
 }  // namespace app

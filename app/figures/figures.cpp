@@ -1,8 +1,16 @@
 #include "app/figures/figures.h"
 
+#include "app/base/message.h"
+#include "app/base/printable.h"
+#include "app/figures/phase_diagram.h"
 #include "app/figures/plots.h"
 #include "app/pictures/flow_picture.h"
 #include "app/pictures/pictures.h"
+#include "app/scene/scene_text.h"
+
+#include "render/core/style.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +22,9 @@ namespace {
 void add_series(render::FigureInput& input, const std::vector<FigureSource>& sources) {
   const SharedScales scales = shared_scales(sources);
   std::vector<const QuantityRow*> rows;
-  for (const std::string& name : input.parameters.quantities) rows.push_back(&find_quantity(name));
+  const std::vector<std::string> only{std::string("inclination")};
+  for (const std::string& name : input.parameters.kind == "inclination" ? only : input.parameters.quantities)
+    rows.push_back(&find_quantity(name));
   input.time_factor = 1;  // the series bring their own
   input.time_symbol = scales.time.symbol;
   for (const FigureSource& source : sources)
@@ -26,6 +36,7 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
   settings.view.supersampling = std::max(settings.view.supersampling, 3);
   input.camera = settings.view.camera;
   const double pixels = render::dots_per_inch(input.parameters) / 72;
+  input.shows_field = render::find_style(settings.view.style).field || settings.view.colour_by != "order";
   constexpr int least = 16;  // px
   std::vector<Still> stills;
   const render::Sheet sheet = render::sheet_layout(input);
@@ -37,7 +48,9 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
                       .width = std::max(least, static_cast<int>(std::lround(p.width * pixels))),
                       .height = std::max(least, static_cast<int>(std::lround(p.height * pixels)))});
   }
-  input.stills = draw_stills(source.trajectory, settings, stills, options);
+  DrawnStills drawn = draw_stills(source.trajectory, settings, stills, options);
+  input.stills = std::move(drawn.images);
+  input.field = std::move(drawn.legend);
 }
 
 void add_flow(render::FigureInput& input, const FigureSource& source) {
@@ -46,10 +59,10 @@ void add_flow(render::FigureInput& input, const FigureSource& source) {
   const TimeUnit unit = time_unit(scene);
   input.flow = flow_picture(plans, scene, input.states.front(),
                             flow_request(plans, input.states.front(), input.parameters, input.length));
-  const std::string speed = input.parameters.frame == "vesicle" ? "in-plane |u − U|" : "in-plane |u|";
+  const std::string speed = input.parameters.frame == "vesicle" ? "in-plane |u\u00a0−\u00a0U|" : "in-plane |u|";
   if (unit.symbol != "t") {
     input.flow.speed_factor = 1 / (unit.factor * input.length);
-    input.flow.speed_label = speed + " / γ̇R_{0}";
+    input.flow.speed_label = speed + " /\u00a0γ̇R_{0}";
   } else {
     input.flow.speed_label = speed;
   }
@@ -58,7 +71,8 @@ void add_flow(render::FigureInput& input, const FigureSource& source) {
 }  // namespace
 
 bool takes_several(std::string_view kind) {
-  return kind == "time-series" || kind == "phase" || kind == "tank-treading";
+  return kind == "time-series" || kind == "inclination" || kind == "phase" || kind == "phase-diagram" ||
+         kind == "tank-treading";
 }
 
 render::Figure make_figure(const std::vector<FigureSource>& sources, const render::FigureParameters& parameters,
@@ -74,8 +88,11 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
   input.length = length_of(trajectory);
   std::vector<double> times;
   for (std::int64_t k = 0; k < trajectory.count(); ++k) times.push_back(trajectory.time(k));
-  const auto take = [&](const std::vector<std::size_t>& chosen) {
-    for (const std::size_t k : chosen) input.states.push_back(trajectory.state(static_cast<std::int64_t>(k)));
+  const auto take = [&](const std::vector<double>& chosen) {
+    for (const double time : chosen) {
+      input.states.push_back(state_at(trajectory, time));
+      input.states.back().time = std::min(time, times.back());
+    }
   };
   switch (kind.needs) {
     case render::FigureNeeds::series:
@@ -85,28 +102,28 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
       if (kind.name == "phase") {
         input.plots = phase_plots(sources, parameters);
       } else if (kind.name == "spectra") {
-        take(render::chosen_states(times, parameters));
+        take(render::chosen_times(times, parameters));
         input.plots = spectra_plots(input);
       } else {
         input.plots = steady_plots(sources);
       }
       break;
-    case render::FigureNeeds::all_states:
-      for (std::size_t k = 0; k < times.size(); ++k) take({k});
-      break;
     case render::FigureNeeds::instants:
-      take(render::chosen_states(times, parameters));
+      take(render::chosen_times(times, parameters));
       break;
     case render::FigureNeeds::stills:
-      take(render::chosen_states(times, parameters));
+      take(render::chosen_times(times, parameters));
       add_stills(input, first, options);
       break;
     case render::FigureNeeds::flow:
       if (parameters.times.empty())
-        take({times.size() - 1});
+        take({times.back()});
       else
-        take({render::chosen_states(times, parameters).front()});
+        take({render::chosen_times(times, parameters).front()});
       add_flow(input, first);
+      break;
+    case render::FigureNeeds::diagram:
+      input.diagram = phase_diagram(sources, parameters);
       break;
   }
   return kind.draw(input);
@@ -116,7 +133,19 @@ std::vector<std::filesystem::path> draw_figure(const std::vector<FigureSource>& 
                                                const render::FigureParameters& parameters,
                                                const std::filesystem::path& stem, const sim::FileWriter& write,
                                                const Options& options) {
-  return render::write_figure(make_figure(sources, parameters, options), stem, {}, write);
+  render::Figure figure = make_figure(sources, parameters, options);
+  std::string titles;
+  std::string& subject = figure.drawing.subject;
+  for (const FigureSource& source : sources) {
+    const std::string title = printable(source.settings.scene.title);
+    if (!title.empty() && titles.find(title) == std::string::npos)
+      titles.append(titles.empty() ? "" : "; ").append(title);
+    subject.append(subject.empty() ? "" : "\n").append(write_scene(source.settings.scene));
+  }
+  figure.drawing.title = fmt::format("{}{}{}", parameters.kind, titles.empty() ? "" : ": ", titles);
+  if (const std::string missing = render::missing_letters(figure.drawing); !missing.empty())
+    tell(fmt::format("no font has the letters '{}': they are drawn as empty boxes", missing));
+  return render::write_figure(figure, stem, {}, write);
 }
 
 }  // namespace app

@@ -46,6 +46,10 @@ std::vector<render::Plot> phase_plots(const std::vector<FigureSource>& sources, 
     render::Curve curve;
     curve.name = source.name;
     curve.colour = plot.curves.size();
+    if (sources.size() > 1) {
+      curve.marker = render::group_marker(curve.colour);
+      curve.phase = (static_cast<double>(curve.colour) + 0.5) / static_cast<double>(sources.size());
+    }
     for (std::size_t k = 0; k < a.times.size(); ++k) {
       curve.x.push_back(a.values[k]);
       curve.y.push_back(value_at(b, a.times[k]));
@@ -59,7 +63,7 @@ std::vector<render::Plot> phase_plots(const std::vector<FigureSource>& sources, 
     start.y = {plot.curves[k].y.front()};
     start.colour = k;
     start.line = false;
-    start.marker = render::Marker::dot;
+    start.marker = lines > 1 ? render::group_marker(k) : render::Marker::dot;
     plot.curves.push_back(start);
   }
   return {plot};
@@ -96,8 +100,8 @@ std::vector<render::Plot> spectra_plots(const render::FigureInput& input) {
   }
   int p = 0;  // an order may change
   for (const sim::State& state : input.states) p = std::max(p, state.vesicles.front().position.order);
-  position.x_range = render::Range{0, static_cast<double>(p)};
-  curvature.x_range = render::Range{0, 4.0 * p};
+  position.x_range = render::Range{0, 1.03 * p};
+  curvature.x_range = render::Range{0, 4.1 * p};
   return {position, curvature};
 }
 

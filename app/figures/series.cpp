@@ -88,20 +88,19 @@ void put_values(const StepCurve& curve, const Measurements& m, std::size_t vesic
   }
 }
 
+constexpr int most_told_apart = 8;  // vesicles of one trajectory: more are a bundle of thin lines
+
 /// How curve `c` of vesicle `v` looks, of `curves` and `vesicles` in all.
-render::Series empty_series(const FigureSource& source, const char* curve, std::size_t c, std::size_t curves, int v,
-                            int vesicles) {
-  std::string name = curves > 1 ? curve : "";
-  const auto add = [&](const std::string& word) { name += (name.empty() ? "" : ", ") + word; };
-  if (vesicles > 1) add(fmt::format("vesicle {}", v));
-  if (!source.name.empty()) add(source.name);
+render::Series empty_series(const FigureSource& source, const char* curve, std::size_t curves, int v, int vesicles) {
+  const auto joined = [](const std::string& text, const std::string& word) {
+    return fmt::format("{}{}{}", text, text.empty() || word.empty() ? "" : ", ", word);
+  };
+  const std::string vesicle = vesicles > 1 ? fmt::format("vesicle {}", v) : "";
   render::Series series;
-  series.name = name;
-  series.dashed = v % 2 == 1;                               // where two agree, both are seen
-  if (vesicles > 1 && curves > 1 && source.name.empty()) {  // colours tell the curves, dashes the vesicles
-    series.colour = c;
-    series.legend = v == 0 ? curve : "";
-  }
+  series.faint = vesicles > most_told_apart;
+  series.part = curves > 1 ? curve : "";
+  series.group = joined(series.faint ? "" : vesicle, source.name);
+  series.name = joined(joined(series.part, vesicle), source.name);
   return series;
 }
 
@@ -135,7 +134,7 @@ std::vector<render::Series> series_of(const FigureSource& source, const SharedSc
       const QuantityUnits units = units_of(source, scales, measurements.length, vesicle);
       const std::size_t count = single ? 1 : curves.size();
       for (std::size_t c = 0; c < count; ++c) {
-        render::Series series = empty_series(source, curves[c].name, c, count, v, vesicles);
+        render::Series series = empty_series(source, curves[c].name, count, v, vesicles);
         series.axis = axis_label(*row, units);
         series.scale = row->scale;
         put_values(curves[c], measurements, vesicle, units, factor, series);

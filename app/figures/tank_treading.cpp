@@ -118,8 +118,6 @@ Panels empty_panels(double least_volume) {
   angle.x_range = frequency.x_range = render::Range{least_volume, 1};
   angle.y_range = render::Range{0, 0.26};
   frequency.y_range = render::Range{0, 0.55};
-  angle.legend = render::Corner::upper_left;
-  frequency.legend = render::Corner::lower_right;
   return panels;
 }
 
@@ -138,7 +136,8 @@ void add_theory(Panels& panels, double least_volume, double contrast, std::size_
     frequency.y.push_back(t.frequency > 0 ? t.frequency : std::nan(""));
   }
   angle.colour = frequency.colour = colour;
-  angle.dashed = frequency.dashed = true;
+  angle.dash = frequency.dash = 1;
+  angle.ink_in_legend = true;
   angle.csv_name = frequency.csv_name = fmt::format("Keller, Skalak 1982, λ = {}", contrast);
   if (colour == 0) angle.name = "Keller, Skalak 1982";
   panels.angle.curves.push_back(angle);
@@ -155,12 +154,17 @@ void add_settled(Panels& panels, std::vector<SteadyPoint> points, double contras
   angle.line = points.size() > 2;
   angle.csv_name = fmt::format("Tanktread, λ = {}", contrast);
   render::Curve frequency = angle;
-  frequency.name = fmt::format("λ = {}", contrast);
-  if (colour == 0) {  // a line of the legend alone
+  // Entries of the legend alone.
+  render::Curve hue;
+  hue.name = fmt::format("λ = {}", contrast);
+  hue.colour = colour;
+  panels.angle.curves.push_back(hue);
+  if (colour == 0) {
     render::Curve mark;
     mark.name = "Tanktread";
     mark.line = false;
     mark.marker = render::Marker::ring;
+    mark.ink_in_legend = true;
     panels.angle.curves.push_back(mark);
   }
   for (const SteadyPoint& p : points) {
@@ -182,6 +186,7 @@ void add_unsettled(Panels& panels, const std::vector<SteadyPoint>& points, doubl
   angle.marker = render::Marker::triangle;
   angle.csv_name = fmt::format("Tanktread, not settled, λ = {}", contrast);
   render::Curve frequency = angle;
+  angle.ink_in_legend = true;
   if (!has_curve(panels.angle, "not settled")) angle.name = "not settled";
   for (const SteadyPoint& p : points) {
     angle.x.push_back(p.reduced_volume);
@@ -205,6 +210,7 @@ void add_literature(render::Plot& plot, const std::vector<LiteraturePoint>& all,
       fresh.colour = colour;
       fresh.csv_name = fmt::format("{}, λ = {}", source, contrast);
       fresh.line = false;
+      fresh.ink_in_legend = true;
       fresh.marker = source.starts_with("Kraus") ? render::Marker::diamond : render::Marker::square;
       if (named && !has_curve(plot, source)) fresh.name = source;
       plot.curves.push_back(fresh);

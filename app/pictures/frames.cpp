@@ -143,7 +143,8 @@ struct Job {
 };
 
 /// Throws before anything is changed when a file of the user is in the way.
-Job prepare(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
+Job prepare(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options,
+            const std::optional<PlotStrip>& plots) {
   const Settings& settings = sources.front().settings;
   const MovieFormat& format = find_movie_format(settings.movie.format);
   Job job{.sources = sources,
@@ -153,7 +154,7 @@ Job prepare(const std::vector<PictureSource>& sources, OwnedFiles& files, const 
           .format = format,
           .movie = movie_name(format)};
   if (job.whole()) check_movie(format, settings.view.size[0], settings.view.size[1]);
-  job.production = prepare_pictures(sources);
+  job.production = prepare_pictures(sources, {}, plots);
   job.times = frame_times(longest(sources).trajectory, settings.movie);
   adopt_movie(files, job.movie);
   if (job.whole())
@@ -256,8 +257,9 @@ void limit_drawing_threads(int threads) {
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 0);
 }
 
-FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options) {
-  const Job job = prepare(sources, files, options);
+FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles& files, const Options& options,
+                          const std::optional<PlotStrip>& plots) {
+  const Job job = prepare(sources, files, options, plots);
   FrameReport report;
   for (const Task& task : job.tasks) report.kept += task.current;
   const bool all_kept = report.kept == static_cast<std::int64_t>(job.tasks.size());
@@ -286,10 +288,10 @@ FrameReport render_frames(const std::vector<PictureSource>& sources, OwnedFiles&
 }
 
 void render_still(const std::vector<PictureSource>& sources, double time, const fs::path& path, ResultFiles& files,
-                  const Options& options) {
+                  const Options& options, const std::optional<PlotStrip>& plots) {
   const double end = end_of(longest(sources));
   require_time(time, end);
-  const Production production = prepare_pictures(sources, time);
+  const Production production = prepare_pictures(sources, time, plots);
   Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, production.height);
   const render::Image image = draw_picture(studio, production, time);
   files.write(path, render::png_bytes(image, picture_text(sources.front(), studio, time, hash_of(production, time))));

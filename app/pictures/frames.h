@@ -23,11 +23,12 @@ struct FrameReport {
 /// sources are drawn side by side; the movie lasts as long as the longest, the others stop at their ends. A movie
 /// made from exactly the same frames at the same rate is kept. Throws, before anything is changed, when an output
 /// name is taken by a file of the user.
-FrameReport render_frames(const std::vector<PictureSource>&, OwnedFiles& folder, const Options&);
+FrameReport render_frames(const std::vector<PictureSource>&, OwnedFiles& folder, const Options&,
+                          const std::optional<PlotStrip>& plots = {});
 
 /// The picture of one instant. Throws std::invalid_argument when the trajectory does not reach it.
 void render_still(const std::vector<PictureSource>&, double time, const std::filesystem::path&, ResultFiles&,
-                  const Options&);
+                  const Options&, const std::optional<PlotStrip>& plots = {});
 
 /// Software OpenGL has threads of its own; the pictures do not depend on their number. For the whole process, and only
 /// before anything is drawn: what the environment says already stays. 0: as many as it likes.

@@ -104,23 +104,26 @@ render::Image draw_picture(Studio& studio, const Production& production, double 
     const sim::State state = state_at(panel.source.trajectory, time);
     parts.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
-  return parts.size() == 1 ? std::move(parts.front()) : joined(production, parts);
+  render::Image whole = parts.size() == 1 && !production.plots ? std::move(parts.front()) : joined(production, parts);
+  if (production.plots) add_plots(whole, *production.plots, time);
+  return whole;
 }
 
-std::vector<render::Image> draw_stills(const sim::TrajectoryReader& trajectory, const Settings& settings,
-                                       const std::vector<Still>& stills, const Options& options) {
+DrawnStills draw_stills(const sim::TrajectoryReader& trajectory, const Settings& settings,
+                        const std::vector<Still>& stills, const Options& options) {
   const Settings plain = plain_settings(settings);
   Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, 1080);
   const double area = sim::measure(studio.plans, trajectory.state(0).vesicles.front(), 1, 1).area;
   const Painting painting =
       plan_painting(trajectory, instants_to_look_at(trajectory), plain, std::sqrt(area / sim::default_area));
-  std::vector<render::Image> images;
+  DrawnStills drawn;
+  if (painting.field != nullptr || plain.view.colour_by != "order") drawn.legend = painting.legend;
   for (const Still& still : stills) {
     const sim::State state = state_at(trajectory, still.time);
     const ViewPanel panel = panel_of(still, {trajectory, plain}, painting, state);
-    images.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
+    drawn.images.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
-  return images;
+  return drawn;
 }
 
 }  // namespace app

@@ -29,7 +29,10 @@ struct Still {
   double half_height = 2;
   int width = 600, height = 400;
 };
-std::vector<render::Image> draw_stills(const sim::TrajectoryReader&, const Settings&, const std::vector<Still>&,
-                                       const Options&);
+struct DrawnStills {
+  std::vector<render::Image> images;
+  std::optional<render::Legend> legend;  ///< of the field they show
+};
+DrawnStills draw_stills(const sim::TrajectoryReader&, const Settings&, const std::vector<Still>&, const Options&);
 
 }  // namespace app

@@ -63,16 +63,21 @@ std::string hash_of(const std::vector<PictureSource>& sources, bool still) {
 
 /// Columns and rows of the panels in a picture of the first view's size; a row for each source when there are several
 /// sources and several cameras.
-Production arranged(const render::ViewParameters& first, std::size_t sources, std::size_t cameras) {
+Production arranged(const render::ViewParameters& first, std::size_t sources, std::size_t cameras,
+                    std::optional<PlotStrip> plots) {
   const auto count = static_cast<int>(sources * cameras);
   Production production;
   production.width = first.size[0];
   production.height = first.size[1];
-  production.columns = sources > 1 && cameras > 1 ? static_cast<int>(cameras)
-                                                  : render::panel_columns(count, production.width, production.height);
+  production.views_width = plots ? plots->views_width : production.width;
+  production.views_height = plots ? plots->views_height : production.height;
+  production.plots = std::move(plots);
+  production.columns = sources > 1 && cameras > 1
+                           ? static_cast<int>(cameras)
+                           : render::panel_columns(count, production.views_width, production.views_height);
   production.rows = (count + production.columns - 1) / production.columns;
   constexpr int least = 16;  // px
-  if (production.width / production.columns < least || production.height / production.rows < least)
+  if (production.views_width / production.columns < least || production.views_height / production.rows < least)
     throw std::invalid_argument(
         fmt::format("{} views need a larger picture than {} x {}", count, production.width, production.height));
   return production;
@@ -126,7 +131,8 @@ void complete(ViewPanel& p, const SourceMeasures& m) {
 
 }  // namespace
 
-Production prepare_pictures(const std::vector<PictureSource>& sources, std::optional<double> still) {
+Production prepare_pictures(const std::vector<PictureSource>& sources, std::optional<double> still,
+                            std::optional<PlotStrip> plots) {
   const render::ViewParameters& first = sources.front().settings.view;
   std::vector<SourceMeasures> measures;
   for (const PictureSource& source : sources) measures.push_back(measures_of(source, sources.size() > 1, still));
@@ -136,13 +142,13 @@ Production prepare_pictures(const std::vector<PictureSource>& sources, std::opti
 
   std::vector<std::string> cameras = first.views;
   if (cameras.empty()) cameras = {first.camera};
-  Production production = arranged(first, sources.size(), cameras.size());
+  Production production = arranged(first, sources.size(), cameras.size(), std::move(plots));
   production.hash = hash_of(sources, still.has_value());
   for (std::size_t k = 0; k < sources.size(); ++k)
     for (std::size_t c = 0; c < cameras.size(); ++c) {
       const bool last = k + 1 == sources.size() && c + 1 == cameras.size(), several = cameras.size() > 1;
       render::ViewParameters view = sources[k].settings.view;
-      view.size = {production.width / production.columns, production.height / production.rows};
+      view.size = {production.views_width / production.columns, production.views_height / production.rows};
       view.supersampling = first.supersampling;
       view.camera = cameras[c];
       view.colour_bar = view.colour_bar && last;

@@ -120,7 +120,7 @@ void draw(const render::Pen& pen, const Errors& errors) {
     const auto x = render::logarithms(errors.gaps), y = render::logarithms(errors.values[c]);
     render::draw_polyline(pen, panel, x, y, {render::curve_colour(c)});
     render::draw_markers(pen, panel, x, y, render::Marker::dot, render::curve_colour(c), 1.5);
-    legend.push_back({fmt::format("λ = {}", errors.contrasts[c]), render::curve_colour(c), {}, false});
+    legend.push_back({fmt::format("λ = {}", errors.contrasts[c]), render::curve_colour(c), {}});
   }
   const render::Axes axes{.x = {.label = "gap / R_{0}", .scale = render::Scale::logarithmic},
                           .y = {.label = "relative error", .scale = render::Scale::logarithmic}};

@@ -105,8 +105,8 @@ Report reproduce_aliasing(const Effort&) {
                         render::draw_title(pen, panel, k == 0 ? "(a)" : "(b)");
                         render::draw_legend_line(
                             pen, panel.left + panel.width, 23,
-                            {{"P_{4}^{1}", render::curve_colour(0), {}, false},
-                             {fmt::format("P_{{{}}}^{{{}}}", aliases[k].n, aliases[k].m), grey, {}, false}});
+                            {{"P_{4}^{1}", render::curve_colour(0), {}},
+                             {fmt::format("P_{{{}}}^{{{}}}", aliases[k].n, aliases[k].m), grey, {}}});
                       }
                     }};
   report.figure = std::move(figure);
@@ -220,10 +220,9 @@ void draw_spectra(const render::Pen& pen, const Spectra& s, const std::vector<re
         0.5 * (curve.points.colwise().maxCoeff() + curve.points.colwise().minCoeff()).transpose();
     render::draw_closed_curve(pen, inset, curve, -middle, {{0.25, 0.28, 0.33}, 0.75}, 0.12);
   }
-  render::draw_legend(
-      pen, panel,
-      {{"position x", render::curve_colour(0), {}, false}, {"mean curvature H", render::curve_colour(1), {}, false}},
-      render::Corner::lower_left);
+  render::draw_legend(pen, panel,
+                      {{"position x", render::curve_colour(0), {}}, {"mean curvature H", render::curve_colour(1), {}}},
+                      render::Corner::lower_left);
 }
 
 }  // namespace

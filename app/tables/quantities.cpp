@@ -44,7 +44,7 @@ const std::vector<QuantityRow>& quantities() {
                              {"a_{3}", [](const Sample& m, const Units& u) { return m.axes[2] / u.length; }}}},
       {.name = "deformation",
        .meaning = "Taylor's, (L - B) / (L + B) with the axes of the second moments in the shear plane",
-       .axis = "deformation D",
+       .axis = "D = (L − B) / (L + B)",
        .scale = Scale::linear,
        .curves = StateCurves{{"D", [](const Sample& m, const Units&) { return m.deformation; }}}},
       {.name = "axis-ratio",

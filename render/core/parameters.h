@@ -12,6 +12,7 @@ inline constexpr std::array<std::string_view, 4> follow_names{"auto", "always", 
 inline constexpr std::array<std::string_view, 2> projection_names{"perspective", "orthographic"};
 inline constexpr std::array<std::string_view, 2> line_names{"material", "grid"};
 inline constexpr std::array<std::string_view, 2> background_names{"gradient", "white"};
+inline constexpr std::array<std::string_view, 2> plot_places{"below", "beside"};
 inline constexpr std::array<std::string_view, 3> streamline_names{"off", "laboratory", "vesicles"};
 inline constexpr std::array<std::string_view, 5> colour_by_names{"order", "viscosity_contrast", "bending_modulus",
                                                                  "density_difference", "reduced_volume"};
@@ -57,6 +58,8 @@ struct ViewParameters {
   bool colour_bar = true;
   bool sign_dots = true;
   std::string background = "gradient";
+  std::vector<std::string> plots;  ///< quantities against time beside the picture
+  std::string plots_at = "below";
 };
 
 template <class P, class V>
@@ -218,6 +221,12 @@ void visit(P& p, V&& v) {
     p.sign_dots);
   v(Parameter{.name = "background", .unit = "", .meaning = "the ground behind everything", .choices = background_names},
     p.background);
+  v(Parameter{.name = "plots",
+              .unit = "",
+              .meaning = "quantities against time, drawn beside the picture with a mark at the time of the frame",
+              .catalogue = "quantities"},
+    p.plots);
+  v(Parameter{.name = "plots_at", .unit = "", .meaning = "where these plots are", .choices = plot_places}, p.plots_at);
 }
 
 /// [[key_frame]]: where the camera is at one time; between key frames it moves smoothly.
@@ -278,6 +287,8 @@ inline constexpr std::array<std::string_view, 2> size_units{"mm", "px"};
 inline constexpr std::array<std::string_view, 3> window_names{"auto", "common", "own"};
 inline constexpr std::array<std::string_view, 2> frame_names{"laboratory", "vesicle"};
 inline constexpr std::array<std::string_view, 2> flow_background_names{"speed", "none"};
+inline constexpr std::array<std::string_view, 2> text_names{"text", "paths"};
+inline constexpr std::array<std::string_view, 2> font_names{"sans", "serif"};
 
 /// [[figure]]: one figure a table.
 struct FigureParameters {
@@ -289,7 +300,10 @@ struct FigureParameters {
   std::vector<double> size;  ///< width, or width and height; empty: as the kind and the theme say
   std::string unit = "mm";
   std::string theme = "paper";
-  double font_size = 0;  ///< pt; 0: the theme's
+  std::string ground = "theme";
+  std::string font = "sans";
+  std::string text = "text";  ///< of PDF and SVG
+  double font_size = 0;       ///< pt; 0: the theme's
   std::optional<double> dots_per_inch;
   std::vector<double> plane_point;  ///< empty: through the centroid of each vesicle
   sim::Vec3 plane_normal{0, 1, 0};
@@ -301,6 +315,7 @@ struct FigureParameters {
   double spacing = 0.16;  ///< of streamlines, R0
   double margin = 1;      ///< round the vesicles in a picture of the flow, R0
   std::string background = "speed";
+  std::vector<std::string> axes;  ///< of a phase diagram; empty: found
 };
 
 template <class P, class V>
@@ -341,6 +356,16 @@ void visit(P& p, V&& v) {
       p.unit);
   v(Parameter{.name = "theme", .unit = "", .meaning = "sizes of text and lines, colours, page", .catalogue = "themes"},
     p.theme);
+  v(Parameter{.name = "ground",
+              .unit = "",
+              .meaning = "of the page: theme, white, dark, transparent, or #rrggbb; ink and colours follow"},
+    p.ground);
+  v(Parameter{.name = "font", .unit = "", .meaning = "of all text", .choices = font_names}, p.font);
+  v(Parameter{.name = "text",
+              .unit = "",
+              .meaning = "in PDF and SVG: text that can be searched and edited, or its outlines",
+              .choices = text_names},
+    p.text);
   v(Parameter{.name = "font_size",
               .unit = "pt",
               .meaning = "of numbers and legends; the rest follows; 0: the theme's",
@@ -391,6 +416,11 @@ void visit(P& p, V&& v) {
               .meaning = "under streamlines: the speed by colours with a bar, or nothing",
               .choices = flow_background_names},
     p.background);
+  v(Parameter{.name = "axes",
+              .unit = "",
+              .meaning = "of a phase diagram: two keys of the scene, such as vesicle.reduced_volume and flow.rate; "
+                         "empty: those in which the scenes differ"},
+    p.axes);
 }
 
 }  // namespace render

@@ -33,8 +33,10 @@ void paint(cairo_surface_t* surface, const Drawing& drawing, double scale, const
            const std::filesystem::path& path) {
   const Context cairo(cairo_create(surface));
   cairo_scale(cairo.get(), scale, scale);
-  cairo_set_source_rgb(cairo.get(), drawing.ground.r, drawing.ground.g, drawing.ground.b);
-  cairo_paint(cairo.get());
+  if (!drawing.transparent) {
+    cairo_set_source_rgb(cairo.get(), drawing.ground.r, drawing.ground.g, drawing.ground.b);
+    cairo_paint(cairo.get());
+  }
   drawing.paint(cairo.get(), font);
   check(cairo_status(cairo.get()), path);
 }
@@ -58,7 +60,7 @@ std::string xml_text(std::string_view text) {
 }
 
 // Cairo would draw each letter as a path. A line of text is one element here, its raised and lowered parts spans of it.
-std::string text_element(const PageText& t) {
+std::string text_element(const PageText& t, FontFamily family) {
   constexpr const char* anchors[] = {"start", "middle", "end"};
   const auto channel = [](double v) { return static_cast<int>(std::lround(255 * v)); };
   const cairo_matrix_t& m = t.place;
@@ -67,10 +69,12 @@ std::string text_element(const PageText& t) {
                                   : fmt::format(" transform=\"matrix({:.6g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g})\"",
                                                 m.xx, m.yx, m.xy, m.yy, m.x0, m.y0);
   std::string element = fmt::format(
-      "<text xml:space=\"preserve\"{} x=\"{:.6g}\" y=\"{:.6g}\" font-family=\"'DejaVu Sans', Verdana, sans-serif\" "
+      "<text xml:space=\"preserve\"{} x=\"{:.6g}\" y=\"{:.6g}\" font-family=\"{}\" "
       "font-size=\"{:.6g}\" text-anchor=\"{}\" "
       "fill=\"#{:02x}{:02x}{:02x}\"",
-      moved, t.x, t.y, t.size, anchors[static_cast<int>(t.align)], channel(t.red), channel(t.green), channel(t.blue));
+      moved, t.x, t.y,
+      family == FontFamily::serif ? "'DejaVu Serif', 'Times New Roman', serif" : "'DejaVu Sans', Verdana, sans-serif",
+      t.size, anchors[static_cast<int>(t.align)], channel(t.red), channel(t.green), channel(t.blue));
   if (t.alpha < 1) element += fmt::format(" fill-opacity=\"{:.3g}\"", t.alpha);
   element += ">";
   double shift = 0;  // of the baseline, upward
@@ -78,12 +82,11 @@ std::string text_element(const PageText& t) {
     if (run.text.empty()) continue;
     const double rise = run.shift() * t.size - shift;
     shift += rise;
-    if (run.level == 0 && rise == 0) {
-      element += xml_text(run.text);
-      continue;
-    }
-    element += fmt::format("<tspan dy=\"{:.6g}\" font-size=\"{:.6g}\">{}</tspan>", -rise, run.size() * t.size,
-                           xml_text(run.text));
+    std::string attributes = run.italic ? " font-style=\"italic\"" : "";
+    if (run.level != 0 || rise != 0)
+      attributes += fmt::format(" dy=\"{:.6g}\" font-size=\"{:.6g}\"", -rise, run.size() * t.size);
+    element +=
+        attributes.empty() ? xml_text(run.text) : fmt::format("<tspan{}>{}</tspan>", attributes, xml_text(run.text));
   }
   return element + "</text>\n";
 }
@@ -134,33 +137,79 @@ std::string renumbered(const std::string& svg) {
 
 }  // namespace
 
+namespace {
+
+Font font_of(const Drawing& drawing, Font::Use use) {
+  return Font(drawing.outlines && use != Font::Use::paths ? Font::Use::paths : use, drawing.family, true);
+}
+
+/// Paints without a page; the font holds the texts.
+Font texts_kept(const Drawing& drawing) {
+  Font font(Font::Use::kept, drawing.family, true);
+  const Surface surface(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));
+  paint(surface.get(), drawing, 1, font, "a page without a file");
+  return font;
+}
+
+/// Colour that was multiplied by its opacity, as a byte without it.
+std::uint8_t without_opacity(std::uint32_t channel, std::uint32_t alpha) {
+  return alpha == 0 ? 0 : static_cast<std::uint8_t>(std::min(255U, (channel * 255 + alpha / 2) / alpha));
+}
+
+}  // namespace
+
+std::vector<PlacedText> texts_of(const Drawing& drawing) {
+  const Font font = texts_kept(drawing);
+  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  const Context cairo(cairo_create(surface.get()));
+  std::vector<PlacedText> all;
+  for (const PageText& t : font.texts()) {
+    const TextBox own = text_box(cairo.get(), font, t.size, t.x, t.y, t.text, t.align);
+    TextBox page{1e300, 1e300, -1e300, -1e300};
+    for (double x : {own.left, own.right})
+      for (double y : {own.top, own.bottom}) {
+        double px = x, py = y;
+        cairo_matrix_transform_point(&t.place, &px, &py);
+        page = {std::min(page.left, px), std::min(page.top, py), std::max(page.right, px), std::max(page.bottom, py)};
+      }
+    all.push_back({t, page});
+  }
+  return all;
+}
+
+std::string missing_letters(const Drawing& drawing) { return texts_kept(drawing).missing(); }
+
 void write_drawing_png(const std::filesystem::path& path, const Drawing& drawing, const PngText& text,
                        const sim::FileWriter& write) {
   const double scale = drawing.dots_per_inch / 72;
   const int width = static_cast<int>(std::lround(drawing.width * scale));
   const int height = static_cast<int>(std::lround(drawing.height * scale));
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
+  const Surface surface(
+      cairo_image_surface_create(drawing.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, width, height));
   check(cairo_surface_status(surface.get()), path);
-  paint(surface.get(), drawing, scale, Font(), path);
+  paint(surface.get(), drawing, scale, font_of(drawing, Font::Use::paths), path);
   cairo_surface_flush(surface.get());
   const unsigned char* data = cairo_image_surface_get_data(surface.get());
   const int stride = cairo_image_surface_get_stride(surface.get());
-  Image image(width, height, 3);
+  Image image(width, height, drawing.transparent ? 4 : 3);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       std::uint32_t v = 0;
       std::memcpy(&v, data + static_cast<std::ptrdiff_t>(y) * stride + 4 * static_cast<std::ptrdiff_t>(x), sizeof v);
+      const std::uint32_t alpha = drawing.transparent ? v >> 24 : 255;
       std::uint8_t* p = image.at(x, y);
-      p[0] = static_cast<std::uint8_t>(v >> 16);
-      p[1] = static_cast<std::uint8_t>(v >> 8);
-      p[2] = static_cast<std::uint8_t>(v);
+      for (int c = 0; c < 3; ++c) p[c] = without_opacity(v >> (16 - 8 * c) & 255, alpha);
+      if (drawing.transparent) p[3] = static_cast<std::uint8_t>(alpha);
     }
-  write_png(path, image, text, default_compression, drawing.dots_per_inch, write);
+  PngText chunks = text;
+  if (!drawing.title.empty()) chunks.emplace_back("Title", drawing.title);
+  if (!drawing.subject.empty()) chunks.emplace_back("Description", drawing.subject);
+  write_png(path, image, chunks, default_compression, drawing.dots_per_inch, write);
 }
 
 void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write) {
   std::string text;
-  const Font font(Font::Use::kept);
+  const Font font = font_of(drawing, Font::Use::kept);
   {
     const Surface surface(cairo_svg_surface_create_for_stream(append, &text, drawing.width, drawing.height));
     check(cairo_surface_status(surface.get()), path);
@@ -171,8 +220,13 @@ void write_drawing_svg(const std::filesystem::path& path, const Drawing& drawing
   const std::size_t end = text.rfind("</svg>");
   if (end == std::string::npos) throw std::runtime_error(path.string() + ": Cairo wrote no complete SVG");
   std::string texts;
-  for (const PageText& t : font.texts()) texts += text_element(t);
-  write(path, renumbered(text.substr(0, end)) + texts + text.substr(end));
+  for (const PageText& t : font.texts()) texts += text_element(t, drawing.family);
+  std::string about;
+  if (!drawing.title.empty()) about += "<title>" + xml_text(drawing.title) + "</title>\n";
+  if (!drawing.subject.empty()) about += "<desc>" + xml_text(drawing.subject) + "</desc>\n";
+  const std::string page = renumbered(text.substr(0, end));
+  const std::size_t inside = std::min(page.find('>', page.find("<svg")), page.size() - 1) + 1;
+  write(path, page.substr(0, inside) + "\n" + about + page.substr(inside) + texts + text.substr(end));
 }
 
 void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing, const sim::FileWriter& write) {
@@ -182,7 +236,9 @@ void write_drawing_pdf(const std::filesystem::path& path, const Drawing& drawing
     check(cairo_surface_status(surface.get()), path);
     // the time of writing would be the only thing that differs from run to run
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
-    paint(surface.get(), drawing, 1, Font(Font::Use::glyphs), path);
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, drawing.title.c_str());
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_SUBJECT, drawing.subject.c_str());
+    paint(surface.get(), drawing, 1, font_of(drawing, Font::Use::glyphs), path);
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()), path);
   }

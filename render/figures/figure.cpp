@@ -21,14 +21,18 @@ const std::vector<FigureRow>& figures() {
       {"snapshots", "a sheet of pictures at one scale, one panel an instant", FigureNeeds::stills, draw_snapshots},
       {"streamlines", "streamlines in a plane, of the whole flow, over its speed there (the part along the plane)",
        FigureNeeds::flow, draw_streamlines},
-      {"inclination", "angle between the flow and the longest axis in the shear plane against time",
-       FigureNeeds::all_states, draw_inclination},
+      {"inclination",
+       "angle between the flow and the longest axis in the shear plane against time, continued over ±90°",
+       FigureNeeds::series, draw_time_series},
       {"time-series", "chosen quantities against time, one panel each", FigureNeeds::series, draw_time_series},
       {"phase", "one quantity against another in the course of time", FigureNeeds::plots, draw_plots},
       {"spectra", "position and mean curvature, degree by degree", FigureNeeds::plots, draw_plots},
       {"tank-treading",
        "angle and frequency of tank-treading against reduced volume, one trajectory a point, beside the literature",
        FigureNeeds::plots, draw_plots},
+      {"phase-diagram",
+       "motion of vesicles over two parameters in which their scenes differ, with their sections in the course of it",
+       FigureNeeds::diagram, draw_phase_diagram},
   };
   return rows;
 }
@@ -54,34 +58,47 @@ Page page_of(const FigureParameters& p) {
   if (font_size == 0 && page.width > 0)
     font_size = page.theme.height > 0 ? page.theme.text * page.width / page.theme.width
                                       : std::min(page.theme.text, page.width / 24);
-  page.theme = find_theme(p.theme, font_size);
+  page.theme = on_ground_named(find_theme(p.theme, font_size), p.ground);
+  page.theme.family = p.font == "serif" ? FontFamily::serif : FontFamily::sans;
   return page;
 }
 
-std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters) {
-  std::vector<std::size_t> chosen;
+Drawing drawing_on(const Theme& theme, const FigureParameters& p, double width, double height,
+                   std::function<void(cairo_t*, const Font&)> paint) {
+  Drawing drawing;
+  drawing.width = width;
+  drawing.height = height;
+  drawing.paint = std::move(paint);
+  drawing.ground = theme.ground;
+  drawing.dots_per_inch = dots_per_inch(p);
+  drawing.transparent = theme.transparent;
+  drawing.family = theme.family;
+  drawing.outlines = p.text == "paths";
+  return drawing;
+}
+
+Marker group_marker(std::size_t group) {
+  constexpr std::array markers{Marker::dot, Marker::square, Marker::triangle, Marker::diamond, Marker::ring};
+  return markers[group % markers.size()];
+}
+
+std::vector<double> chosen_times(const std::vector<double>& state_times, const FigureParameters& parameters) {
   const std::size_t count = state_times.size();
-  if (count == 0) return chosen;
-  if (!parameters.times.empty()) {
-    for (const double time : parameters.times) {
-      const double end = state_times.back();
-      if (!(time >= 0 && time <= end * (1 + 1e-9))) {
-        const auto [last, wanted] = sim::told_apart(end, time, 6);
-        throw std::invalid_argument(
-            fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {} for figure.times", last, wanted));
-      }
-      const auto nearest = std::min_element(state_times.begin(), state_times.end(), [&](double a, double b) {
-        return std::abs(a - time) < std::abs(b - time);
-      });
-      chosen.push_back(static_cast<std::size_t>(nearest - state_times.begin()));
-    }
-    return chosen;
+  if (count == 0) return {};
+  for (const double time : parameters.times) {
+    const double end = state_times.back();
+    if (time >= 0 && time <= end * (1 + 1e-9)) continue;
+    const auto [last, wanted] = sim::told_apart(end, time, 6);
+    throw std::invalid_argument(
+        fmt::format("the trajectory goes from t = 0 to t = {}; there is no t = {} for figure.times", last, wanted));
   }
+  if (!parameters.times.empty()) return parameters.times;
+  std::vector<double> chosen;
   const std::size_t panels =
       std::clamp<std::size_t>(static_cast<std::size_t>(std::max(parameters.panels, 1)), 1, count);
   for (std::size_t k = 0; k < panels; ++k) {
     const double place = panels == 1 ? 0 : static_cast<double>(k * (count - 1)) / static_cast<double>(panels - 1);
-    chosen.push_back(static_cast<std::size_t>(std::lround(place)));
+    chosen.push_back(state_times[static_cast<std::size_t>(std::lround(place))]);
   }
   return chosen;
 }

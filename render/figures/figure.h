@@ -5,6 +5,7 @@
 #include "render/figures/canvas.h"
 #include "render/figures/plot_marks.h"
 #include "render/figures/streamlines.h"
+#include "render/scene/frame.h"
 
 #include "sim/core/catalogue.h"
 #include "sim/core/types.h"
@@ -16,32 +17,38 @@ namespace render {
 
 /// Quantities against time, computed by the caller: one curve each; curves with the same `axis` share a panel.
 struct Series {
-  std::string name;  ///< in the legend: "λ = 4"; column header of the CSV
-  std::string axis;  ///< label of the panel's y axis: "σR_{0}^{2}/κ_{b}"
+  std::string name;   ///< column of the CSV
+  std::string axis;   ///< label of the panel's y axis: "σR_{0}^{2}/κ_{b}"
+  std::string group;  ///< whose curve it is, in the legend of the figure: colours and marks tell groups apart
+  std::string part;   ///< which curve of its quantity, in the key of its panel: dashes tell parts apart
   std::vector<double> times, values;
   Scale scale = Scale::linear;
-  std::optional<std::size_t> colour;  ///< number of the palette; else in order
-  bool dashed = false;
-  std::optional<std::string> legend;  ///< instead of the name in the legend; empty: not in the legend
+  bool faint = false;  ///< one of many
 };
 
 /// A panel of curves.
 struct Curve {
-  std::string name;  ///< in the legend; empty: not there
+  std::string name;  ///< in the legend of the figure; empty: not there
+  std::string part;  ///< in the key of its panel; empty: not there
   std::vector<double> x, y;
   std::vector<double> error;      ///< half lengths of bars; empty: none
   std::size_t colour = 0;         ///< number of the palette
   std::optional<double> instant;  ///< 0..1: a colour between early and late instead of the palette
   std::optional<Marker> marker;
-  bool line = true, dashed = false;
-  std::string csv_name = {};  ///< in the CSV; empty: the name, or the curve's number
+  double phase = -1;  ///< 0..1: marks along the curve, the first after this share of their distance; else at the points
+  bool line = true;
+  int dash = 0;
+  bool faint = false;          ///< one of many: thin
+  bool ink_in_legend = false;  ///< the name tells a mark or dash, whatever the colour
+  std::string csv_name = {};   ///< in the CSV; empty: the name and part, or the curve's number
 };
 struct Plot {
   Axis x, y;  ///< on a logarithmic axis the curves contain the values themselves
   std::vector<Curve> curves;
   std::optional<Range> x_range, y_range;
-  std::optional<Corner> legend;  ///< its corner
 };
+/// Marks of groups in turn.
+Marker group_marker(std::size_t group);
 
 /// The flow in a plane at one instant, computed by the caller.
 struct FlowPicture {
@@ -56,13 +63,31 @@ struct FlowPicture {
   std::vector<std::string> remarks;  ///< first lines of the CSV
 };
 
+/// One vesicle in a phase diagram.
+struct DiagramPoint {
+  double x = 0, y = 0;
+  std::size_t kind = 0;  ///< of its motion: number in Diagram::kinds
+  /// Sections at some instants of its motion, the last of which is drawn full; relative to its centre, R0.
+  std::vector<std::vector<ClosedCurve>> outlines;
+};
+/// Motions over two parameters.
+struct Diagram {
+  std::string x, y;                ///< labels of the axes
+  std::vector<std::string> kinds;  ///< of motion, in the legend
+  std::vector<DiagramPoint> points;
+  std::string csv;
+};
+
 struct FigureInput {
   std::vector<sim::State> states;   ///< those to show
   std::vector<std::string> labels;  ///< one per vesicle, for the legend; may be empty
-  std::vector<Series> series;       ///< of "time-series"
+  std::vector<Series> series;       ///< of "time-series" and "inclination"
   std::vector<Plot> plots;          ///< for kinds drawn from plots
   std::vector<Image> stills;        ///< for "snapshots": the pictures requested by sheet_layout()
+  bool shows_field = false;         ///< they show a field, whose bar needs room
+  std::optional<Legend> field;      ///< its bar
   FlowPicture flow;                 ///< of "streamlines"
+  Diagram diagram;                  ///< of "phase-diagram"
   std::string time_symbol = "t";    ///< "γ̇t"
   double time_factor = 1;           ///< shown time = this x State::time
   double length = 1;                ///< area radius: lengths are shown in units of it
@@ -77,7 +102,7 @@ struct Figure {
 };
 
 /// The input of a kind of figure.
-enum class FigureNeeds { instants, all_states, series, plots, stills, flow };
+enum class FigureNeeds { instants, series, plots, stills, flow, diagram };
 
 struct FigureRow {
   std::string_view name;
@@ -92,6 +117,10 @@ const FigureRow& find_figure(std::string_view name);
 /// Of the PNG.
 double dots_per_inch(const FigureParameters& parameters);
 
+/// A drawing on the ground and in the font of the theme, as the parameters ask.
+Drawing drawing_on(const Theme& theme, const FigureParameters& parameters, double width, double height,
+                   std::function<void(cairo_t*, const Font&)> paint);
+
 /// The requested page: sizes in points, 0 where the kind of figure decides.
 struct Page {
   Theme theme;
@@ -99,9 +128,9 @@ struct Page {
 };
 Page page_of(const FigureParameters& parameters);
 
-/// `panels` indices spread evenly over `count` states, including first and last; or, with times, the nearest states.
-/// Throws std::invalid_argument for a time beyond the last state.
-std::vector<std::size_t> chosen_states(const std::vector<double>& state_times, const FigureParameters& parameters);
+/// Instants of a figure: `times`, or those of `panels` states spread evenly, first and last among them. Throws
+/// std::invalid_argument for a time beyond the last state.
+std::vector<double> chosen_times(const std::vector<double>& state_times, const FigureParameters& parameters);
 
 /// The plane of a figure; origin: the given point, or the vesicle's centroid. Its axes lie along x and z as far as
 /// possible.

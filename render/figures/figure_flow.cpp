@@ -109,14 +109,16 @@ struct FlowLayout {
   Panel panel;
   Panel bar;  ///< of the speeds, beside the panel
   Ticks bar_ticks;
+  Axis bar_axis;                 ///< its label
+  bool frame_below = false;      ///< the frame of reference stands in a line of its own, under the time
   double width = 0, height = 0;  ///< of the page
 };
 
-/// top_speed: at the upper end of the bar; 0: there is no bar.
-FlowLayout layout_of(const FigureInput& input, const Page& page, const Axes& axes, double top_speed) {
+/// top_speed: at the upper end of the bar; 0: there is no bar. titles: width of the texts above the panel, in one line.
+FlowLayout layout_of(const FigureInput& input, const Page& page, Axes& axes, double top_speed, double titles) {
   const FlowPicture& flow = input.flow;
   const Theme& theme = page.theme;
-  const Ruler ruler;
+  const Ruler ruler(theme.family);
   const double length = input.length;
   const double bar_width = 1.1 * theme.text, bar_gap = 1.3 * theme.text;
   FlowLayout layout;
@@ -129,14 +131,28 @@ FlowLayout layout_of(const FigureInput& input, const Page& page, const Axes& axe
   bar.width = bar_width;
   layout.width = page.width > 0 ? page.width : page.height > 0 ? theme.width : 0.85 * theme.width;
   layout.height = page.height;
-  const double title = title_height(theme);
-  for (int round = 0; round < 3; ++round) {  // the size of the panel decides its ticks, and they the margins
-    const Margins m = margins_of(ruler, theme, axes, panel);
+  layout.bar_axis.label = input.flow.speed_label;
+  double title = title_height(theme);
+  Margins before;
+  for (int round = 0; round < layout_rounds;
+       ++round) {  // the size of the panel decides its ticks, and they the margins
+    layout.frame_below = layout.frame_below || (round > 0 && titles > panel.width);
+    title = title_height(theme) + (layout.frame_below ? 1.3 * theme.text : 0);
+    for (Axis* axis : {&axes.x, &axes.y, &layout.bar_axis}) axis->label_scale = 1;
+    axes.x = fitted(ruler, theme, axes.x, panel.width);
+    axes.y = fitted(ruler, theme, axes.y, panel.height);
+    layout.bar_axis = fitted(ruler, theme, layout.bar_axis, panel.height);
+    const auto bar_lines = static_cast<double>(lines_of(layout.bar_axis.label).size());
+    Margins m = margins_of(ruler, theme, axes, panel);
+    if (round > free_rounds) m = widest(m, before);
+    before = m;
     layout.bar_ticks = ticks_of(ruler, theme, {}, bar.y, panel.height, false);
-    const double beside =
-        top_speed > 0 ? bar_gap + bar_width + 0.5 * theme.text + layout.bar_ticks.widest + 1.6 * theme.label : m.right;
+    const double beside = top_speed > 0 ? bar_gap + bar_width + 0.5 * theme.text + layout.bar_ticks.widest +
+                                              (0.4 + 1.2 * bar_lines) * theme.label
+                                        : m.right;
     double scale = (layout.width - m.left - beside) / panel.x.size();
     if (page.height > 0) scale = std::min(scale, (page.height - title - m.bottom) / panel.y.size());
+    scale = std::max(scale, 1e-6);
     panel.width = scale * panel.x.size();
     panel.height = scale * panel.y.size();
     panel.left = m.left + (layout.width - m.left - beside - panel.width) / 2;
@@ -160,7 +176,7 @@ struct FlowDrawing {
   std::array<Range, 2> cells;          ///< covered by the image, likewise
   std::shared_ptr<const Image> image;  ///< of the speeds; null: none
   Contours sections;
-  std::string speed_label, title, frame;
+  std::string title, frame;
 };
 
 void draw_lines(const Pen& pen, const FlowDrawing& d) {
@@ -221,11 +237,16 @@ void draw_speed_bar(const Pen& pen, const FlowDrawing& d) {
     draw_text(cairo, pen.font, theme.text, bar.left + bar.width + 0.4 * theme.text, y + 0.36 * theme.text,
               ticks.texts[k]);
   }
+  const Axis& axis = d.layout.bar_axis;
+  const double size = theme.label * axis.label_scale;
   cairo_save(cairo);
-  cairo_translate(cairo, bar.left + bar.width + 0.5 * theme.text + ticks.widest + 1.3 * theme.label,
-                  bar.top + bar.height / 2);
+  cairo_translate(cairo, bar.left + bar.width + 0.5 * theme.text + ticks.widest + 1.3 * size, bar.top + bar.height / 2);
   cairo_rotate(cairo, -std::numbers::pi / 2);
-  draw_text(cairo, pen.font, theme.label, 0, 0, d.speed_label, Align::centre);
+  double y = 0;
+  for (const std::string& line : lines_of(axis.label)) {
+    draw_text(cairo, pen.font, size, 0, y, line, Align::centre);
+    y += 1.2 * size;
+  }
   cairo_restore(cairo);
 }
 
@@ -234,10 +255,13 @@ void draw(const Pen& pen, const FlowDrawing& d) {
   draw_flow(pen, d);
   draw_sections(pen, d);
   draw_axes(pen, panel, d.axes);
-  draw_title(pen, panel, d.title);
+  const bool below = d.layout.frame_below;
+  Panel titled = panel;
+  if (below) titled.top -= 1.3 * pen.theme.text;
+  draw_title(pen, titled, d.title);
   set_colour(pen, pen.theme.soft);
-  draw_text(pen.cairo, pen.font, pen.theme.text, panel.left + panel.width, panel.top - 0.55 * pen.theme.label, d.frame,
-            Align::right);
+  draw_text(pen.cairo, pen.font, pen.theme.text, below ? panel.left : panel.left + panel.width,
+            panel.top - 0.55 * pen.theme.label, d.frame, below ? Align::left : Align::right);
   if (d.image) draw_speed_bar(pen, d);
 }
 
@@ -257,7 +281,12 @@ Figure draw_streamlines(const FigureInput& input) {
   const double top_speed = flow.speed.size() > 0 ? round_up(flow.speed_factor * flow.speed.maxCoeff()) : 0;
   FlowDrawing d;
   d.axes = axes_of(input);
-  d.layout = layout_of(input, page, d.axes, top_speed);
+  d.title = time_text(input, input.time_factor * state.time);
+  d.frame = frame_text(input);
+  const Ruler ruler(page.theme.family);
+  const double titles =
+      ruler.width(page.theme.label, d.title) + 1.5 * page.theme.text + ruler.width(page.theme.text, d.frame);
+  d.layout = layout_of(input, page, d.axes, top_speed, titles);
   d.theme = page.theme;
   d.length = input.length;
   d.lines = flow.lines;
@@ -265,19 +294,12 @@ Figure draw_streamlines(const FigureInput& input) {
   d.cells = flow.speed_window;
   if (top_speed > 0) d.image = std::make_shared<const Image>(picture_of(flow.speed, top_speed / flow.speed_factor));
   d.sections = sections_of(state, flow.plane, input.length);
-  d.speed_label = flow.speed_label;
-  d.title = time_text(input, input.time_factor * state.time);
-  d.frame = frame_text(input);
   Figure figure;
   figure.csv = csv_of(flow, input.length);
-  figure.drawing = {.width = d.layout.width,
-                    .height = d.layout.height,
-                    .paint =
-                        [d](cairo_t* cairo, const Font& font) {
-                          draw({cairo, font, d.theme}, d);
-                        },
-                    .ground = page.theme.ground,
-                    .dots_per_inch = dots_per_inch(input.parameters)};
+  figure.drawing =
+      drawing_on(page.theme, input.parameters, d.layout.width, d.layout.height, [d](cairo_t* cairo, const Font& font) {
+        draw({cairo, font, d.theme}, d);
+      });
   return figure;
 }
 

@@ -9,9 +9,9 @@ Figure draw_cross_sections(const FigureInput& input);
 Figure draw_overlay(const FigureInput& input);
 Figure draw_snapshots(const FigureInput& input);
 Figure draw_streamlines(const FigureInput& input);
-Figure draw_inclination(const FigureInput& input);
 Figure draw_time_series(const FigureInput& input);
 Figure draw_plots(const FigureInput& input);
+Figure draw_phase_diagram(const FigureInput& input);
 
 /// a..z, then aa, ab, ...
 std::string letter(std::size_t k);

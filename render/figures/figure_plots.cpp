@@ -1,15 +1,10 @@
-// Figures of curves: inclination, quantities against time, and plots of any kind.
+// Figures of curves: quantities against time, and plots of any kind.
 #include "render/figures/figure_kinds.h"
 #include "render/figures/panel_grid.h"
-#include "render/scene/surface.h"
-
-#include "sim/surface/geometry.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 namespace render {
@@ -29,8 +24,9 @@ std::string csv_of(const std::vector<Plot>& plots) {
     for (std::size_t c = 0; c < plots[k].curves.size(); ++c) {
       const Curve& curve = plots[k].curves[c];
       const std::string name = csv_cell(!curve.csv_name.empty() ? curve.csv_name
-                                        : curve.name.empty()    ? std::to_string(c)
-                                                                : curve.name);
+                                        : !curve.name.empty()   ? curve.name
+                                        : !curve.part.empty()   ? curve.part
+                                                                : std::to_string(c));
       for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
         text += fmt::format("{},{},{:.10g},{:.10g},{}\n", csv_cell(plots[k].y.label), name, curve.x[i], curve.y[i],
                             i < curve.error.size() ? fmt::format("{:.6g}", curve.error[i]) : "");
@@ -38,58 +34,42 @@ std::string csv_of(const std::vector<Plot>& plots) {
   return text;
 }
 
-// An angle that passes 90 degrees comes back at -90: the line is interrupted there.
-Series interrupted(Series s) {
-  for (std::size_t i = 1; i < s.values.size(); ++i)
-    if (std::abs(s.values[i] - s.values[i - 1]) > 90) {
-      const auto at = static_cast<std::ptrdiff_t>(i);
-      s.times.insert(s.times.begin() + at, s.times[i]);
-      s.values.insert(s.values.begin() + at, std::nan(""));
-      ++i;
-    }
-  return s;
-}
+constexpr std::size_t unmarked = 1;  // groups: a single one needs no marks
 
-Figure against_time(const FigureInput& input, const std::vector<Series>& all, std::string csv) {
+}  // namespace
+
+std::vector<Plot> plots_against_time(const std::vector<Series>& all, const std::string& time_symbol) {
   std::vector<Plot> plots;
+  std::vector<std::string> groups;
+  for (const Series& s : all)
+    if (std::find(groups.begin(), groups.end(), s.group) == groups.end()) groups.push_back(s.group);
   for (const Series& s : all) {
     auto plot = std::find_if(plots.begin(), plots.end(), [&](const Plot& p) { return p.y.label == s.axis; });
     if (plot == plots.end()) {
       plots.emplace_back();
       plot = plots.end() - 1;
-      plot->x = {.label = input.time_symbol, .grid = true};
+      plot->x = {.label = time_symbol, .grid = true};
       plot->y = {.label = s.axis, .scale = s.scale, .grid = true};
     }
+    std::vector<std::string> parts;
+    for (const Curve& curve : plot->curves)
+      if (std::find(parts.begin(), parts.end(), curve.part) == parts.end()) parts.push_back(curve.part);
+    const auto group = static_cast<std::size_t>(std::find(groups.begin(), groups.end(), s.group) - groups.begin());
     Curve curve;
-    curve.name = s.legend.value_or(s.name);
+    curve.name = groups.size() > unmarked ? s.group : "";
+    curve.part = s.part;
     curve.x = s.times;
     curve.y = s.values;
-    curve.colour = s.colour.value_or(plot->curves.size());
-    curve.dashed = s.dashed;
+    curve.colour = group;
+    curve.dash = static_cast<int>(std::find(parts.begin(), parts.end(), s.part) - parts.begin());
+    curve.faint = s.faint;
+    if (groups.size() > unmarked && !s.faint) {
+      curve.marker = group_marker(group);
+      curve.phase = (static_cast<double>(group) + 0.5) / static_cast<double>(groups.size());
+    }
     plot->curves.push_back(std::move(curve));
   }
-  return arranged(input, std::move(plots), true, std::move(csv));
-}
-
-}  // namespace
-
-Figure draw_inclination(const FigureInput& input) {
-  if (input.states.empty()) throw std::invalid_argument("a figure of the inclination needs at least one state");
-  std::vector<Series> all(input.states.front().vesicles.size());
-  for (std::size_t v = 0; v < all.size(); ++v) {
-    all[v].axis = "inclination θ (°)";
-    all[v].scale = Scale::degrees;
-    all[v].name = v < input.labels.size() ? input.labels[v] : all.size() > 1 ? fmt::format("vesicle {}", v) : "";
-    for (const sim::State& state : input.states) {
-      if (v >= state.vesicles.size()) continue;
-      all[v].times.push_back(input.time_factor * state.time);
-      all[v].values.push_back(sim::inclination(volume_moments(state.vesicles[v].position).second) * 180 /
-                              std::numbers::pi);
-    }
-  }
-  std::string csv = csv_of(all);
-  for (Series& s : all) s = interrupted(std::move(s));
-  return against_time(input, all, std::move(csv));
+  return plots;
 }
 
 Figure draw_time_series(const FigureInput& input) {
@@ -97,7 +77,7 @@ Figure draw_time_series(const FigureInput& input) {
   std::vector<Series> all = input.series;
   for (Series& s : all)
     for (double& t : s.times) t *= input.time_factor;
-  return against_time(input, all, csv_of(all));
+  return arranged(input, plots_against_time(all, input.time_symbol), true, csv_of(all));
 }
 
 Figure draw_plots(const FigureInput& input) {

@@ -12,18 +12,18 @@
 namespace render {
 namespace {
 
-struct Cut {
+struct SectionCut {
   std::vector<ClosedCurve> curves;
   Eigen::Vector2d origin;  ///< of the curves, in units of input.length
 };
 
 struct Sections {
-  std::vector<double> times;             ///< as shown
-  std::vector<std::vector<Cut>> cuts;    ///< state, vesicle; lengths in units of input.length
-  std::vector<Eigen::Vector2d> centres;  ///< of each state's window
-  std::string right, up;                 ///< names of the axes
-  bool follows = false;                  ///< windows are centred on each state
-  double half_x = 0, half_y = 0;         ///< of the window, the same for all states
+  std::vector<double> times;                  ///< as shown
+  std::vector<std::vector<SectionCut>> cuts;  ///< state, vesicle; lengths in units of input.length
+  std::vector<Eigen::Vector2d> centres;       ///< of each state's window
+  std::string right, up;                      ///< names of the axes
+  bool follows = false;                       ///< windows are centred on each state
+  double half_x = 0, half_y = 0;              ///< of the window, the same for all states
 };
 
 Sections sections_of(const FigureInput& input) {
@@ -37,11 +37,11 @@ Sections sections_of(const FigureInput& input) {
   for (const sim::State& state : input.states) {
     all.times.push_back(input.time_factor * state.time);
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
-    std::vector<Cut> cuts;
+    std::vector<SectionCut> cuts;
     for (const sim::VesicleState& vesicle : state.vesicles) {
       const CutPlane plane = plane_of(input.parameters, volume_moments(vesicle.position).centroid);
-      Cut c{cut(vesicle.position, plane),
-            Eigen::Vector2d(plane.origin.dot(plane.right), plane.origin.dot(plane.up)) / input.length};
+      SectionCut c{cut(vesicle.position, plane),
+                   Eigen::Vector2d(plane.origin.dot(plane.right), plane.origin.dot(plane.up)) / input.length};
       for (ClosedCurve& curve : c.curves) {
         curve.points /= input.length;
         for (Eigen::Index i = 0; i < curve.points.rows(); ++i) {
@@ -81,7 +81,7 @@ std::string csv_of(const Sections& s) {
   for (std::size_t k = 0; k < s.cuts.size(); ++k)
     for (std::size_t v = 0; v < s.cuts[k].size(); ++v)
       for (std::size_t c = 0; c < s.cuts[k][v].curves.size(); ++c) {
-        const Cut& one = s.cuts[k][v];
+        const SectionCut& one = s.cuts[k][v];
         for (Eigen::Index i = 0; i < one.curves[c].points.rows(); ++i)
           text += fmt::format("{:.10g},{},{},{:.10g},{:.10g}\n", s.times[k], v, c,
                               one.curves[c].points(i, 0) + one.origin.x(), one.curves[c].points(i, 1) + one.origin.y());
@@ -103,26 +103,46 @@ Panel window(const Sections& s, std::size_t k) {
   return p;
 }
 
-Eigen::Vector2d shift_of(const Sections& s, std::size_t k, const Cut& c) {
+Eigen::Vector2d shift_of(const Sections& s, std::size_t k, const SectionCut& c) {
   return s.follows ? Eigen::Vector2d(c.origin - s.centres[k]) : c.origin;
+}
+
+std::vector<LegendEntry> vesicle_legend(const FigureInput& input, const Theme& theme) {
+  std::vector<LegendEntry> entries;
+  for (std::size_t v = 0; v < input.labels.size(); ++v)
+    entries.push_back({.name = input.labels[v], .colour = vesicle_colour(theme, v), .marker = {}});
+  return entries;
 }
 
 struct Strip {
   std::vector<Panel> panels;
   std::vector<Axes> axes;
   std::vector<std::string> titles;
+  LaidLegend legend;
+  bool whole_titles = true;  ///< with their times
   double width = 0, height = 0;
 };
+
+/// How far numbers of x reach beyond the ends of a panel, together.
+double overhang(const Ruler& ruler, const Theme& theme, const Axis& axis, const Panel& panel) {
+  const Ticks x = ticks_of(ruler, theme, axis, panel.x, panel.width, true);
+  if (x.values.empty()) return 0;
+  const double left = ruler.width(theme.text, x.texts.front()) / 2 - (panel.page_x(x.values.front()) - panel.left);
+  const double right =
+      ruler.width(theme.text, x.texts.back()) / 2 - (panel.left + panel.width - panel.page_x(x.values.back()));
+  return std::max(left, 0.0) + std::max(right, 0.0);
+}
 
 // Panels of one scale in rows: as large as the page allows.
 Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, std::size_t columns) {
   const Theme& theme = page.theme;
-  const Ruler ruler;
+  const Ruler ruler(theme.family);
   const std::size_t count = s.cuts.size(), rows = (count + columns - 1) / columns;
-  const double gap = 1.2 * theme.text, title = title_height(theme),
-               legend = input.labels.empty() ? 0 : 1.8 * theme.text;
-  const double page_width = page.width > 0 ? page.width : theme.width;
+  const double title = title_height(theme), page_width = page.width > 0 ? page.width : theme.width;
+  double gap = 1.2 * theme.text;
   Strip strip;
+  strip.legend = laid_legend(ruler, theme, vesicle_legend(input, theme), page_width - 1.6 * theme.text);
+  const double legend = strip.legend.entries.empty() ? 0 : strip.legend.height + 0.4 * theme.text;
   for (std::size_t k = 0; k < count; ++k) {
     const bool lowest = k + columns >= count, leftmost = k % columns == 0;
     strip.panels.push_back(window(s, k));
@@ -131,8 +151,9 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
                           0});
   }
   double scale = page_width / (2 * s.half_x * static_cast<double>(std::max<std::size_t>(columns, 2)));
-  for (int round = 0; round < 3; ++round) {
-    Margins m;
+  Margins before;
+  for (int round = 0; round < layout_rounds; ++round) {
+    Margins m = round > free_rounds ? before : Margins();
     for (std::size_t k = 0; k < count; ++k) {
       strip.panels[k].width = 2 * s.half_x * scale;
       strip.panels[k].height = 2 * s.half_y * scale;
@@ -141,6 +162,9 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
       m.right = std::max(m.right, one.right);
       m.bottom = std::max(m.bottom, one.bottom);
     }
+    before = m;
+    if (columns > 1)  // numbers of neighbours do not touch
+      gap = std::max(1.2 * theme.text, 0.7 * theme.text + overhang(ruler, theme, {}, strip.panels.front()));
     const double free_width = page_width - m.left - m.right - gap * static_cast<double>(columns - 1);
     // A few panels do not grow beyond half of the page, unless its size was asked for.
     const double across = static_cast<double>(page.width > 0 ? columns : std::max<std::size_t>(columns, 2));
@@ -168,7 +192,7 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
   // Labels wider than their panel stand once, in the middle; titles too long for it lose their time.
   const Panel& panel = strip.panels.front();
   const auto fits = [&](const std::string& text, double room) {
-    return ruler.width(theme.label, text) < room + 0.5 * gap;
+    return ruler.width(theme.label, text) < room + 0.25 * theme.text;
   };
   bool long_titles = false;
   for (std::size_t k = 0; k < count; ++k) {
@@ -180,16 +204,10 @@ Strip strip_of(const Sections& s, const FigureInput& input, const Page& page, st
     if (!axes.y.label.empty() && !fits(axes.y.label, panel.height + title) && k / columns != (rows - 1) / 2)
       axes.y.label.clear();
   }
+  strip.whole_titles = !long_titles;
   if (long_titles)
     for (std::size_t k = 0; k < count; ++k) strip.titles[k] = fmt::format("({})", letter(k));
   return strip;
-}
-
-std::vector<LegendEntry> vesicle_legend(const FigureInput& input, const Theme& theme) {
-  std::vector<LegendEntry> entries;
-  for (std::size_t v = 0; v < input.labels.size(); ++v)
-    entries.push_back({input.labels[v], vesicle_colour(theme, v), {}, false});
-  return entries;
 }
 
 }  // namespace
@@ -201,18 +219,21 @@ Figure draw_cross_sections(const FigureInput& input) {
   auto columns = std::min(static_cast<std::size_t>(input.parameters.columns), count);
   Strip strip;
   if (columns > 0 || page.height == 0) {
-    if (columns == 0) columns = count <= 4 ? count : (count <= 6 ? 3 : 4);
+    const bool free = columns == 0;
+    if (free) columns = count <= 4 ? count : (count <= 6 ? 3 : 4);
     strip = strip_of(*s, input, page, columns);
+    while (free && columns > 1 && !strip.whole_titles) strip = strip_of(*s, input, page, --columns);
   } else {  // the number of columns that makes the panels largest
     for (std::size_t c = 1; c <= count; ++c) {
       Strip trial = strip_of(*s, input, page, c);
-      if (strip.panels.empty() || trial.panels[0].width > strip.panels[0].width) strip = std::move(trial);
+      const bool better = strip.panels.empty() || (trial.whole_titles && !strip.whole_titles) ||
+                          (trial.whole_titles == strip.whole_titles && trial.panels[0].width > strip.panels[0].width);
+      if (better) strip = std::move(trial);
     }
   }
   Figure figure;
   figure.csv = csv_of(*s);
-  figure.drawing = {strip.width, strip.height, nullptr, page.theme.ground, dots_per_inch(input.parameters)};
-  figure.drawing.paint = [s, input, strip, theme = page.theme](cairo_t* cairo, const Font& font) {
+  const auto paint = [s, strip, theme = page.theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     for (std::size_t k = 0; k < strip.panels.size(); ++k) {
       const Panel& panel = strip.panels[k];
@@ -222,8 +243,9 @@ Figure draw_cross_sections(const FigureInput& input) {
       draw_axes(pen, panel, strip.axes[k]);
       draw_title(pen, panel, strip.titles[k]);
     }
-    draw_legend_line(pen, strip.width - 0.8 * theme.text, 1.4 * theme.text, vesicle_legend(input, theme));
+    draw_legend(pen, strip.legend, strip.panels.front().left, 0.4 * theme.text);
   };
+  figure.drawing = drawing_on(page.theme, input.parameters, strip.width, strip.height, paint);
   return figure;
 }
 
@@ -231,52 +253,67 @@ Figure draw_overlay(const FigureInput& input) {
   const auto s = std::make_shared<const Sections>(sections_of(input));
   const Page page = page_of(input.parameters);
   const Theme& theme = page.theme;
-  const Ruler ruler;
+  const Ruler ruler(theme.family);
   std::vector<LegendEntry> entries;
+  std::vector<Colour> colours;
   const double first = s->times.front(), span = std::max(s->times.back() - first, 1e-300);
-  for (std::size_t k = 0; k < s->cuts.size(); ++k)
-    entries.push_back(
-        {time_text(input, s->times[k]), on_ground(theme, colour_of_time((s->times[k] - first) / span)), {}, false});
-  const std::vector<LegendEntry> colours = entries;
+  for (std::size_t k = 0; k < s->cuts.size(); ++k) {
+    colours.push_back(on_ground(theme, colour_of_time((s->times[k] - first) / span)));
+    entries.push_back({.name = time_text(input, s->times[k]), .colour = colours.back(), .marker = {}});
+  }
   if (entries.size() > 14)
     entries = {entries.front(), entries[entries.size() / 2], entries.back()};  // the ends tell the rest
-  const Axes axes{{axis_label(s->right, input, s->follows), Scale::linear, true, true},
-                  {axis_label(s->up, input, s->follows), Scale::linear, true, true},
-                  0};
+  Axes axes{{axis_label(s->right, input, s->follows), Scale::linear, true, true},
+            {axis_label(s->up, input, s->follows), Scale::linear, true, true},
+            0};
   Panel panel = window(*s, 0);
-  const Eigen::Vector2d legend = legend_size(ruler, theme, entries);
   const double page_width = page.width > 0 ? page.width : page.height > 0 ? theme.width : 0.85 * theme.width;
+  // The legend in a column beside the panel, or above it where the page is narrow.
+  const double edge = 0.8 * theme.text;
+  double column = 0;
+  for (const LegendEntry& entry : entries)
+    column = std::max(column, 1.001 * laid_legend(ruler, theme, {entry}, page_width).width);
+  LaidLegend legend = laid_legend(ruler, theme, entries, column);
+  const bool above = legend.width + 2 * edge > 0.3 * page_width || (page.height > 0 && legend.height > page.height);
+  if (above) legend = laid_legend(ruler, theme, entries, page_width - 2 * edge);
+  const double beside = above ? 0 : legend.width + 2 * edge, top = above ? legend.height + 0.5 * edge : 0;
   double page_height = page.height;
   panel.width = panel.height = 200;
-  for (int round = 0; round < 3; ++round) {
-    const Margins m = margins_of(ruler, theme, axes, panel);
-    double scale = (page_width - m.left - legend.x()) / panel.x.size();
-    if (page.height > 0) scale = std::min(scale, (page.height - m.top - m.bottom) / panel.y.size());
+  Margins before;
+  for (int round = 0; round < layout_rounds; ++round) {
+    axes.x.label_scale = axes.y.label_scale = 1;
+    axes.x = fitted(ruler, theme, axes.x, panel.width);
+    axes.y = fitted(ruler, theme, axes.y, panel.height);
+    Margins m = margins_of(ruler, theme, axes, panel);
+    if (round > free_rounds) m = widest(m, before);
+    before = m;
+    const double right = above ? m.right : std::max(beside, m.right);
+    double scale = (page_width - m.left - right) / panel.x.size();
+    if (page.height > 0) scale = std::min(scale, (page.height - top - m.top - m.bottom) / panel.y.size());
+    scale = std::max(scale, 1.0);
     panel.width = scale * panel.x.size();
     panel.height = scale * panel.y.size();
-    panel.left = m.left + (page_width - m.left - legend.x() - panel.width) / 2;
-    const double used = std::max(panel.height + m.bottom, legend.y()) + m.top;
-    if (page.height == 0) page_height = std::ceil(used);
-    panel.top = m.top + std::max(0.0, page_height - panel.height - m.top - m.bottom) / 2;
+    panel.left = m.left + (page_width - m.left - right - panel.width) / 2;
+    const double used = std::max(panel.height + m.bottom, above ? 0.0 : legend.height) + m.top;
+    if (page.height == 0) page_height = std::ceil(top + used);
+    panel.top = top + m.top + std::max(0.0, page_height - top - panel.height - m.top - m.bottom) / 2;
   }
   Figure figure;
   figure.csv = csv_of(*s);
-  figure.drawing = {page_width, page_height, nullptr, theme.ground, dots_per_inch(input.parameters)};
-  figure.drawing.paint = [s, entries, colours, panel, axes, legend, theme = page.theme](cairo_t* cairo,
-                                                                                        const Font& font) {
+  const Eigen::Vector2d at =
+      above ? Eigen::Vector2d(std::max(edge, std::min(panel.left, page_width - edge - legend.width)), 0.5 * edge)
+            : Eigen::Vector2d(panel.left + panel.width + edge, panel.top);
+  const auto paint = [s, colours, panel, axes, legend, at, theme = page.theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     draw_grid(pen, panel, axes);
     for (std::size_t k = 0; k < s->cuts.size(); ++k)
-      for (const Cut& c : s->cuts[k])
+      for (const SectionCut& c : s->cuts[k])
         for (const ClosedCurve& curve : c.curves)
-          draw_closed_curve(pen, panel, curve, shift_of(*s, k, c), {colours[k].colour, 0.9});
+          draw_closed_curve(pen, panel, curve, shift_of(*s, k, c), {colours[k], 0.9});
     draw_axes(pen, panel, axes);
-    Panel beside = panel;
-    beside.left += panel.width;
-    beside.width = legend.x();
-    beside.top -= 0.5 * theme.text;
-    draw_legend(pen, beside, entries, Corner::upper_left);
+    draw_legend(pen, legend, at.x(), at.y());
   };
+  figure.drawing = drawing_on(theme, input.parameters, page_width, page_height, paint);
   return figure;
 }
 

@@ -33,7 +33,10 @@ Extent extent_of(const sim::State& state, const ViewAxes& axes) {
 struct SheetNeeds {
   std::vector<Extent> extents;
   std::vector<double> widths;
-  double half_height = 0;  ///< of all panels
+  double half_height = 0;      ///< of all panels
+  std::vector<double> titles;  ///< widths of the texts above the panels, pt
+
+  double width_at(std::size_t k, double scale) const { return std::max(widths[k] * scale, titles[k]); }
 };
 SheetNeeds needs_of(const FigureInput& input, const ViewAxes& axes) {
   SheetNeeds needs;
@@ -54,6 +57,7 @@ struct SheetPage {
   double width, height;  ///< height 0: as much as the rows need
   double gap;            ///< between two panels
   double title, space;   ///< above and below each row
+  double foot;           ///< below them all
 };
 
 /// Rows filled one after the other at a scale; the index after the last panel of each.
@@ -62,7 +66,7 @@ std::vector<std::size_t> row_ends(const SheetNeeds& needs, const SheetPage& page
   double used = 0;
   std::size_t in_row = 0;
   for (std::size_t k = 0; k < needs.widths.size(); ++k) {
-    const double w = needs.widths[k] * scale;
+    const double w = needs.width_at(k, scale);
     if (in_row > 0 && (used + page.gap + w > page.width * (1 + 1e-9) || in_row == most)) {
       ends.push_back(k);
       used = 0;
@@ -77,13 +81,34 @@ std::vector<std::size_t> row_ends(const SheetNeeds& needs, const SheetPage& page
 
 /// Of so many rows, pt.
 double height_of(const SheetNeeds& needs, const SheetPage& page, double scale, std::size_t rows) {
-  return static_cast<double>(rows) * (2 * needs.half_height * scale + page.title + page.space);
+  return static_cast<double>(rows) * (2 * needs.half_height * scale + page.title + page.space) + page.foot;
 }
 
 struct Rows {
   std::vector<std::size_t> ends;
-  double scale = 1;  ///< points per length
+  double scale = 1;    ///< points per length
+  double uniform = 0;  ///< width of all panels, pt; 0: each as its state needs
 };
+
+/// The grid of equal panels with the largest scale.
+Rows fitted_grid(const SheetNeeds& needs, const SheetPage& page, std::size_t most) {
+  const std::size_t count = needs.widths.size();
+  const double tallest = page.height > 0 ? page.height : 0.86 * page.width;
+  const double widest = *std::max_element(needs.widths.begin(), needs.widths.end());
+  const double title = *std::max_element(needs.titles.begin(), needs.titles.end());
+  Rows best{.ends = {}, .scale = 0};
+  for (std::size_t columns = 1; columns <= std::min(most, count); ++columns) {
+    const std::size_t rows = (count + columns - 1) / columns;
+    const double width = (page.width - page.gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
+    const double room = (tallest - page.foot - static_cast<double>(rows) * (page.title + page.space)) /
+                        (static_cast<double>(rows) * 2 * needs.half_height);
+    const double scale = std::min(width / widest, room);
+    if (scale <= best.scale || title > width) continue;
+    best = {.ends = {}, .scale = scale, .uniform = width};
+    for (std::size_t end = columns; end < count + columns; end += columns) best.ends.push_back(std::min(end, count));
+  }
+  return best;
+}
 
 /// The largest scale whose rows fit on the page.
 Rows fitted_rows(const SheetNeeds& needs, const SheetPage& page, std::size_t most) {
@@ -105,9 +130,81 @@ Rows fitted_rows(const SheetNeeds& needs, const SheetPage& page, std::size_t mos
     for (; k < rows.ends[r]; ++k) sum += needs.widths[k];
     fullest = std::max(fullest, sum / (page.width - page.gap * (in_row - 1)));
   }
-  const double room = (tallest - count * (page.title + page.space)) / (count * 2 * needs.half_height);
-  if (page.height > 0 || rows.ends.size() > 1) rows.scale = std::max(rows.scale, std::min(1 / fullest, room));
+  const double room = (tallest - page.foot - count * (page.title + page.space)) / (count * 2 * needs.half_height);
+  const double larger = std::max(rows.scale, std::min(1 / fullest, room));
+  if ((page.height > 0 || rows.ends.size() > 1) && row_ends(needs, page, most, larger) == rows.ends)
+    rows.scale = larger;
   return rows;
+}
+
+/// A line so long with its ends marked, and what it is beside it.
+void draw_scale_bar(const Pen& pen, double left, double baseline, double length, const std::string& symbol) {
+  const double text = pen.theme.text, y = baseline - 0.3 * text, tick = 0.22 * text;
+  set_colour(pen, pen.theme.ink);
+  cairo_set_line_width(pen.cairo, 1.4 * pen.theme.line);
+  cairo_set_line_cap(pen.cairo, CAIRO_LINE_CAP_BUTT);
+  const double inset = 0.7 * pen.theme.line;
+  cairo_move_to(pen.cairo, left + inset, y);
+  cairo_rel_line_to(pen.cairo, length, 0);
+  for (const double x : {left + inset, left + inset + length}) {
+    cairo_move_to(pen.cairo, x, y - tick);
+    cairo_rel_line_to(pen.cairo, 0, 2 * tick);
+  }
+  cairo_stroke(pen.cairo);
+  draw_text(pen.cairo, pen.font, text, left + length + 0.8 * text, baseline, symbol);
+}
+
+/// The colours of the field below the panels: its label, the bar, numbers.
+void draw_field_bar(const Pen& pen, const Legend& field, double left, double right, double top) {
+  const Theme& theme = pen.theme;
+  const double text = theme.text, height = 0.8 * text, point = 0.8 * height;
+  const Ruler ruler(theme.family);
+  Panel bar;
+  bar.x = {field.low, field.high};
+  bar.y = {0, 1};
+  bar.left = left + point;
+  bar.width = right - left - 2 * point;
+  bar.top = top + 1.35 * text;
+  bar.height = height;
+  constexpr int steps = 256;
+  Image ramp(steps, 1, 3);
+  for (int k = 0; k < steps; ++k)
+    std::copy(field.colours[static_cast<std::size_t>(k)].begin(), field.colours[static_cast<std::size_t>(k)].end(),
+              ramp.at(k, 0));
+  draw_picture(pen.cairo, ramp, bar.left, bar.top, bar.width, bar.height);
+  const double bottom = bar.top + height, end = bar.left + bar.width;
+  const auto outside = [&](double from, double tip, double share) {  // values beyond the range
+    const Colour c = mapped(field.colours, share);
+    set_colour(pen, c);
+    cairo_move_to(pen.cairo, from, bar.top);
+    cairo_line_to(pen.cairo, tip, bar.top + height / 2);
+    cairo_line_to(pen.cairo, from, bottom);
+    cairo_close_path(pen.cairo);
+    cairo_fill(pen.cairo);
+  };
+  if (field.below) outside(bar.left, bar.left - point, 0);
+  if (field.above) outside(end, end + point, 1);
+  set_colour(pen, theme.ink);
+  cairo_set_line_width(pen.cairo, 0.8 * theme.line);
+  cairo_move_to(pen.cairo, bar.left, bar.top);
+  cairo_line_to(pen.cairo, end, bar.top);
+  if (field.above) cairo_line_to(pen.cairo, end + point, bar.top + height / 2);
+  cairo_line_to(pen.cairo, end, bottom);
+  cairo_line_to(pen.cairo, bar.left, bottom);
+  if (field.below) cairo_line_to(pen.cairo, bar.left - point, bar.top + height / 2);
+  cairo_close_path(pen.cairo);
+  cairo_stroke(pen.cairo);
+  const Ticks ticks = ticks_of(ruler, theme, {}, bar.x, bar.width, true);
+  for (std::size_t k = 0; k < ticks.values.size(); ++k) {
+    const double x = bar.page_x(ticks.values[k]);
+    cairo_move_to(pen.cairo, x, bottom);
+    cairo_rel_line_to(pen.cairo, 0, 0.3 * text);
+    cairo_stroke(pen.cairo);
+    draw_text(pen.cairo, pen.font, text, x, bottom + 1.25 * text, ticks.texts[k], Align::centre);
+  }
+  const Axis label = fitted(ruler, theme, {.label = field.label}, bar.width);
+  draw_text(pen.cairo, pen.font, std::min(text, theme.label * label.label_scale), bar.left + bar.width / 2,
+            top + 0.95 * text, field.label, Align::centre);
 }
 
 }  // namespace
@@ -120,12 +217,22 @@ Sheet sheet_layout(const FigureInput& input) {
                        .height = paper.height,
                        .gap = 0.9 * theme.text,
                        .title = title_height(theme),
-                       .space = 0.3 * theme.text};
+                       .space = 0.3 * theme.text,
+                       .foot = (input.shows_field ? 4.1 : 1.7) * theme.text};
   const ViewAxes axes = find_camera(input.camera).axes;
-  const SheetNeeds needs = needs_of(input, axes);
+  SheetNeeds needs = needs_of(input, axes);
+  const Ruler ruler(theme.family);
+  std::vector<std::string> titles;
+  for (std::size_t k = 0; k < input.states.size(); ++k) {
+    titles.push_back(fmt::format("({})  {}", letter(k), time_text(input, input.time_factor * input.states[k].time)));
+    needs.titles.push_back(ruler.width(theme.label, titles.back()) + 0.3 * theme.text);
+  }
   const std::size_t most =
       input.parameters.columns > 0 ? static_cast<std::size_t>(input.parameters.columns) : needs.widths.size();
-  const auto [ends, scale] = fitted_rows(needs, page, most);
+  Rows rows = fitted_rows(needs, page, most);
+  // Equal panels look calmer, where the vesicles do not become much smaller in them.
+  if (Rows grid = fitted_grid(needs, page, most); grid.scale > 0.65 * rows.scale) rows = std::move(grid);
+  const auto& [ends, scale, uniform] = rows;
 
   Sheet sheet;
   sheet.width = page.width;
@@ -136,7 +243,7 @@ Sheet sheet_layout(const FigureInput& input) {
   const double first = std::max(0.0, sheet.height - used) / 2;
   for (std::size_t r = 0, k = 0; r < ends.size(); ++r) {
     double sum = 0;
-    for (std::size_t i = k; i < ends[r]; ++i) sum += needs.widths[i] * scale;
+    for (std::size_t i = k; i < ends[r]; ++i) sum += needs.width_at(i, scale);
     const auto in_row = static_cast<double>(ends[r] - k);
     const double extra = (page.width - page.gap * (in_row - 1) - sum) / in_row;
     double left = 0;
@@ -144,12 +251,12 @@ Sheet sheet_layout(const FigureInput& input) {
       SheetPanel p;
       p.left = left;
       p.top = first + static_cast<double>(r) * (height + page.title + page.space) + page.title;
-      p.width = needs.widths[k] * scale + extra;
+      p.width = uniform > 0 ? uniform : needs.width_at(k, scale) + extra;
       p.height = height;
       const Eigen::Vector2d middle = (needs.extents[k].low + needs.extents[k].high) / 2;
       p.target = middle.x() * to_sim(axes.right) + middle.y() * to_sim(axes.up);
       p.half_height = needs.half_height;
-      p.title = fmt::format("({})  {}", letter(k), time_text(input, input.time_factor * input.states[k].time));
+      p.title = titles[k];
       left += p.width + page.gap;
       sheet.panels.push_back(std::move(p));
     }
@@ -173,13 +280,8 @@ Figure draw_snapshots(const FigureInput& input) {
                                 input.time_factor * input.states[k].time, v, c.x, c.y, c.z);
     }
   const auto stills = std::make_shared<const std::vector<Image>>(input.stills);
-  figure.drawing = {.width = sheet.width,
-                    .height = sheet.height,
-                    .paint = nullptr,
-                    .ground = page.theme.ground,
-                    .dots_per_inch = dots_per_inch(input.parameters)};
-  figure.drawing.paint = [sheet, stills, input_length = input.length, symbol = input.length_symbol, theme = page.theme](
-                             cairo_t* cairo, const Font& font) {
+  const auto paint = [sheet, stills, scale_bar = sheet.scale * input.length, symbol = input.length_symbol,
+                      field = input.field, theme = page.theme](cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     for (std::size_t k = 0; k < sheet.panels.size(); ++k) {
       const SheetPanel& p = sheet.panels[k];
@@ -194,15 +296,14 @@ Figure draw_snapshots(const FigureInput& input) {
       frame.top = p.top;
       draw_title(pen, frame, p.title);
     }
-    // A bar one unit long in the first panel: all panels have one scale. It stands on the picture, which is light.
-    const SheetPanel& p = sheet.panels.front();
-    const double bar = sheet.scale * input_length, x = p.left + 0.9 * theme.text,
-                 y = p.top + p.height - 0.9 * theme.text;
-    cairo_set_source_rgb(cairo, ink.r, ink.g, ink.b);
-    cairo_rectangle(cairo, x, y - 0.18 * theme.text, bar, 0.18 * theme.text);
-    cairo_fill(cairo);
-    draw_text(cairo, font, theme.text, x + bar / 2, y - 0.55 * theme.text, symbol, Align::centre);
+    // All panels have one scale.
+    const double foot = sheet.panels.back().top + sheet.panels.back().height, left = sheet.panels.front().left;
+    draw_scale_bar(pen, left, foot + 0.95 * theme.text, scale_bar, symbol);
+    if (!field) return;
+    const double from = left + scale_bar + 4 * theme.text, width = std::min(0.55 * sheet.width, 26 * theme.text);
+    draw_field_bar(pen, *field, std::max(from, sheet.width - width), sheet.width - 0.5 * theme.text, foot);
   };
+  figure.drawing = drawing_on(page.theme, input.parameters, sheet.width, sheet.height, paint);
   return figure;
 }
 

@@ -12,7 +12,12 @@
 namespace render {
 namespace {
 
-constexpr double number_gap = 0.5;  // between the frame and a number, in heights of the text
+constexpr double number_gap = 0.5;     // between the frame and a number, in heights of the text
+constexpr double label_spacing = 1.2;  // of the lines of a label, likewise
+
+double label_height(const Theme& theme, const Axis& axis) {
+  return label_spacing * theme.label * axis.label_scale * static_cast<double>(lines_of(axis.label).size());
+}
 
 std::string power_text(double decade) {
   const int n = static_cast<int>(std::lround(decade));
@@ -25,13 +30,115 @@ void set_colour(const Pen& pen, const Colour& c, double opacity) {
   cairo_set_source_rgba(pen.cairo, c.r, c.g, c.b, opacity);
 }
 
-Ruler::Ruler() {
+Ruler::Ruler(FontFamily family) : font_(Font::Use::paths, family, true) {
   cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
   cairo_ = {cairo_create(surface), cairo_destroy};
   cairo_surface_destroy(surface);
 }
 
 double Ruler::width(double size, std::string_view text) const { return text_width(cairo_.get(), font_, size, text); }
+
+namespace {
+
+/// The longest part of a word from its begin that is not wider, at least one letter; never within `_{...}`.
+std::size_t fitting(const Ruler& ruler, double size, std::string_view word, double width) {
+  std::size_t best = 0;
+  bool raised = false;
+  for (std::size_t k = 0; k < word.size(); ++k) {
+    if (word[k] == '{') raised = true;
+    if (word[k] == '}') raised = false;
+    const bool within_letter = k + 1 < word.size() && (static_cast<unsigned char>(word[k + 1]) & 0xc0) == 0x80;
+    const bool before_index = k + 2 < word.size() && (word[k + 1] == '_' || word[k + 1] == '^') && word[k + 2] == '{';
+    if (raised || within_letter || before_index || word[k] == '_' || word[k] == '^') continue;
+    if (best > 0 && ruler.width(size, word.substr(0, k + 1)) > width) break;
+    best = k + 1;
+  }
+  return best > 0 ? best : word.size();
+}
+
+}  // namespace
+
+std::vector<std::string> wrapped(const Ruler& ruler, double size, std::string_view text, double width) {
+  std::vector<std::string> lines;
+  std::string line;
+  for (std::size_t at = 0; at <= text.size();) {
+    std::size_t end = text.find(' ', at);
+    if (end == std::string_view::npos) end = text.size();
+    std::string_view word = text.substr(at, end - at);
+    at = end + 1;
+    const std::string longer = line.empty() ? std::string(word) : line + " " + std::string(word);
+    if (ruler.width(size, longer) <= width) {
+      line = longer;
+      continue;
+    }
+    if (!line.empty()) lines.push_back(line);
+    while (ruler.width(size, word) > width) {
+      const std::size_t part = fitting(ruler, size, word, width);
+      if (part >= word.size()) break;
+      lines.emplace_back(word.substr(0, part));
+      word.remove_prefix(part);
+    }
+    line = word;
+  }
+  if (!line.empty() || lines.empty()) lines.push_back(line);
+  return lines;
+}
+
+std::string shortened(const Ruler& ruler, double size, const std::string& text, double width) {
+  if (ruler.width(size, text) <= width) return text;
+  std::string kept = text;
+  while (!kept.empty()) {
+    const std::string_view less(kept.data(), kept.size() - 1);
+    const std::size_t part = fitting(ruler, size, less, width - ruler.width(size, "…"));
+    if (part == 0 || part >= kept.size()) break;
+    kept.resize(part);
+    while (kept.ends_with(' ')) kept.pop_back();
+    if (ruler.width(size, kept + "…") <= width) break;
+  }
+  return kept + "…";
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    lines.emplace_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return lines;
+}
+
+Axis fitted(const Ruler& ruler, const Theme& theme, Axis axis, double length) {
+  if (axis.label.empty()) return axis;
+  const std::vector<std::string> whole = lines_of(axis.label);
+  std::string text;
+  for (const std::string& line : whole) text += (text.empty() ? "" : " ") + line;
+  const double size = theme.label * axis.label_scale;
+  double longest_word = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    longest_word = std::max(longest_word, 1.001 * ruler.width(size, text.substr(at, end - at)));
+    at = end + 1;
+  }
+  double best = 0;
+  for (int lines = 1; lines <= 3; ++lines) {
+    // The narrowest lines, of so many.
+    double width = std::max(ruler.width(size, text) / lines, longest_word);
+    std::vector<std::string> broken = wrapped(ruler, size, text, width);
+    for (int k = 0; k < 60 && broken.size() > static_cast<std::size_t>(lines); ++k)
+      broken = wrapped(ruler, size, text, width *= 1.04);
+    double widest = 0;
+    for (const std::string& line : broken) widest = std::max(widest, ruler.width(size, line));
+    const double factor = std::min(1.0, length / std::max(widest, 1e-9));
+    if (factor <= best * 1.02) continue;
+    best = factor;
+    axis.label.clear();
+    for (const std::string& line : broken) axis.label += (axis.label.empty() ? "" : "\n") + line;
+    if (factor == 1) break;
+  }
+  axis.label_scale *= best;
+  return axis;
+}
 
 std::vector<double> tick_values(const Range& range, int wanted, Scale scale) {
   if (!(range.size() > 0) || wanted < 1) return {};
@@ -137,20 +244,27 @@ Margins margins_of(const Ruler& ruler, const Theme& theme, const Axes& axes, con
     m.left += y.widest + number_gap * theme.text;
     m.top = std::max(m.top, 0.6 * theme.text);
   }
-  if (!axes.y.label.empty()) m.left = std::max(m.left, axes.label_room) + 1.35 * theme.label;
+  if (!axes.y.label.empty())
+    m.left = std::max(m.left, axes.label_room) + 0.15 * theme.label + label_height(theme, axes.y);
   if (axes.x.numbers) {
     m.bottom += 1.3 * theme.text + number_gap * theme.text;
     if (!x.texts.empty()) {  // a number at the end of the axis hangs over
       const double at = (x.values.back() - panel.x.low) / panel.x.size() * panel.width;
       m.right = std::max(m.right, edge + at + ruler.width(theme.text, x.texts.back()) / 2 - panel.width);
+      const double from = (x.values.front() - panel.x.low) / panel.x.size() * panel.width;
+      m.left = std::max(m.left, edge + ruler.width(theme.text, x.texts.front()) / 2 - from);
     }
   }
-  if (!axes.x.label.empty()) m.bottom += 1.5 * theme.label;
+  if (!axes.x.label.empty()) m.bottom += 0.3 * theme.label + label_height(theme, axes.x);
   return m;
 }
 
+Margins widest(const Margins& a, const Margins& b) {
+  return {std::max(a.left, b.left), std::max(a.right, b.right), std::max(a.top, b.top), std::max(a.bottom, b.bottom)};
+}
+
 void draw_grid(const Pen& pen, const Panel& p, const Axes& axes) {
-  const Ruler ruler;
+  const Ruler ruler(pen.theme.family);
   cairo_set_line_width(pen.cairo, 0.65 * pen.theme.line);
   set_colour(pen, pen.theme.faint);
   if (axes.x.grid)
@@ -169,7 +283,7 @@ void draw_grid(const Pen& pen, const Panel& p, const Axes& axes) {
 void draw_axes(const Pen& pen, const Panel& p, const Axes& axes) {
   cairo_t* cairo = pen.cairo;
   const Theme& theme = pen.theme;
-  const Ruler ruler;
+  const Ruler ruler(pen.theme.family);
   set_colour(pen, theme.ink);
   cairo_set_line_width(cairo, theme.line);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT);
@@ -206,18 +320,26 @@ void draw_axes(const Pen& pen, const Panel& p, const Axes& axes) {
     for (std::size_t k = 0; k < ys.values.size(); ++k)
       draw_text(cairo, pen.font, theme.text, p.left - number_gap * theme.text,
                 p.page_y(ys.values[k]) + 0.36 * theme.text, ys.texts[k], Align::right);
-  if (!axes.x.label.empty())
-    draw_text(cairo, pen.font, theme.label, p.left + p.width / 2,
-              p.top + p.height + (axes.x.numbers ? (number_gap + 1.3) * theme.text : 0) + 1.15 * theme.label,
-              axes.x.label, Align::centre);
+  if (!axes.x.label.empty()) {
+    const double size = theme.label * axes.x.label_scale;
+    double y = p.top + p.height + (axes.x.numbers ? (number_gap + 1.3) * theme.text : 0) + 1.15 * size;
+    for (const std::string& line : lines_of(axes.x.label)) {
+      draw_text(cairo, pen.font, size, p.left + p.width / 2, y, line, Align::centre);
+      y += label_spacing * size;
+    }
+  }
   if (axes.y.label.empty()) return;
   const double beside = axes.label_room > 0 ? axes.label_room
                         : axes.y.numbers    ? ys.widest + number_gap * theme.text
                                             : 0;
+  const double size = theme.label * axes.y.label_scale;
+  const std::vector<std::string> lines = lines_of(axes.y.label);
   cairo_save(cairo);
-  cairo_translate(cairo, p.left - beside - 0.6 * theme.label, p.top + p.height / 2);
+  cairo_translate(cairo, p.left - beside - 0.6 * size, p.top + p.height / 2);
   cairo_rotate(cairo, -std::numbers::pi / 2);
-  draw_text(cairo, pen.font, theme.label, 0, 0, axes.y.label, Align::centre);
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    draw_text(cairo, pen.font, size, 0, -label_spacing * size * static_cast<double>(lines.size() - 1 - k), lines[k],
+              Align::centre);
   cairo_restore(cairo);
 }
 

@@ -34,13 +34,20 @@ void set_colour(const Pen& pen, const Colour& colour, double opacity = 1);
 /// Measures text widths before a page exists.
 class Ruler {
  public:
-  Ruler();
+  explicit Ruler(FontFamily family = FontFamily::sans);
   double width(double size, std::string_view text) const;
 
  private:
   Font font_;
   std::shared_ptr<cairo_t> cairo_;
 };
+
+/// The text in lines of at most that width, broken at blanks, and within words that are wider.
+std::vector<std::string> wrapped(const Ruler& ruler, double size, std::string_view text, double width);
+/// As much of the beginning of a text as fits, with "…" where it is not all.
+std::string shortened(const Ruler& ruler, double size, const std::string& text, double width);
+/// The lines of a text, which '\n' separates.
+std::vector<std::string> lines_of(std::string_view text);
 
 /// linear: multiples of 1, 2, 2.5 or 5 times a power of ten. degrees: of 5, 15, 30, 45... logarithmic: the coordinate
 /// is the decimal logarithm, ticks at decades.
@@ -59,11 +66,14 @@ Range decades(const std::vector<double>& values);
 std::vector<double> logarithms(const std::vector<double>& values);
 
 struct Axis {
-  std::string label;  ///< empty: none
+  std::string label;  ///< empty: none; '\n' separates lines
   Scale scale = Scale::linear;
   bool numbers = true;
-  bool grid = false;  ///< faint lines at the ticks
+  bool grid = false;       ///< faint lines at the ticks
+  double label_scale = 1;  ///< of its text
 };
+/// The axis with its label in lines that fit beside it: up to three, then smaller.
+Axis fitted(const Ruler& ruler, const Theme& theme, Axis axis, double length);
 struct Axes {
   Axis x, y;
   double label_room =
@@ -84,6 +94,10 @@ struct Margins {
   double left = 0, right = 0, top = 0, bottom = 0;
 };
 Margins margins_of(const Ruler& ruler, const Theme& theme, const Axes& axes, const Panel& panel);
+/// The larger of both on each side. Numbers depend on the size of a panel and its size on the margins, so that rounds
+/// may swing between two: those after the first ones only widen.
+Margins widest(const Margins& a, const Margins& b);
+inline constexpr int free_rounds = 2, layout_rounds = 5;
 
 /// Faint grid; call before the curves.
 void draw_grid(const Pen& pen, const Panel& panel, const Axes& axes);

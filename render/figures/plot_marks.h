@@ -13,8 +13,10 @@ struct Stroke {
   Colour colour;
   double width = 1;  ///< in units of the theme's stroke
   double opacity = 1;
-  bool dashed = false;
+  int dash = 0;  ///< number of dashes; 0: none
 };
+/// Patterns beside the whole line, told apart in grey.
+inline constexpr int dash_count = 5;
 /// Clipped to the panel. Points that are not finite interrupt the line.
 void draw_polyline(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
                    const Stroke& stroke);
@@ -25,16 +27,20 @@ enum class Marker { dot, square, diamond, triangle, ring };
 /// radius: in units of the theme's stroke. error: half length of a bar in y; empty: none.
 void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
                   Marker marker, const Colour& colour, double radius = 1.8, const std::vector<double>& error = {});
+/// Marks on a line, about `spacing` apart on the page, the first after the share `phase` of it.
+void draw_markers_along(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                        Marker marker, const Colour& colour, double spacing, double phase);
 /// An RGB picture in a rectangle of the page; smooth: interpolated when enlarged.
 void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height,
                   bool smooth = true);
 
 /// One line of a legend.
 struct LegendEntry {
-  std::string name;
-  Colour colour;
-  std::optional<Marker> marker;  ///< instead of a line
-  bool dashed = false;
+  std::string name;              ///< '\n' separates lines
+  std::optional<Colour> colour;  ///< none: ink
+  std::optional<Marker> marker;
+  int dash = 0;
+  bool line = true;
 };
 enum class Corner { upper_right, lower_right, upper_left, lower_left };
 void draw_legend(const Pen& pen, const Panel& panel, const std::vector<LegendEntry>& entries, Corner corner);
@@ -42,8 +48,21 @@ void draw_legend(const Pen& pen, const Panel& panel, const std::vector<LegendEnt
 void draw_legend_line(const Pen& pen, double right, double baseline, const std::vector<LegendEntry>& entries);
 /// Size including its margin, pt.
 Eigen::Vector2d legend_size(const Ruler& ruler, const Theme& theme, const std::vector<LegendEntry>& entries);
-/// A corner where a rectangle of that size intersects no curve, if any.
-std::optional<Corner> empty_corner(const Panel& panel, const Eigen::Vector2d& size,
-                                   const std::vector<std::pair<std::vector<double>, std::vector<double>>>& curves);
+/// A rectangle of that size within the panel that no curve comes nearer than `distance` (pt): its upper left corner, if
+/// any.
+std::optional<Eigen::Vector2d> free_place(
+    const Panel& panel, const Eigen::Vector2d& size,
+    const std::vector<std::pair<std::vector<double>, std::vector<double>>>& curves, double distance);
+
+/// A legend in as many columns as fit, with long names in several lines.
+struct LaidLegend {
+  std::vector<LegendEntry> entries;
+  std::vector<Eigen::Vector2d> places;  ///< upper left corners
+  double width = 0, height = 0;
+};
+/// lines: at most so many for a name, which is then shortened; most: further entries become "and 3 more".
+LaidLegend laid_legend(const Ruler& ruler, const Theme& theme, const std::vector<LegendEntry>& entries, double width,
+                       std::size_t lines = 3, std::size_t most = 40);
+void draw_legend(const Pen& pen, const LaidLegend& legend, double left, double top);
 
 }  // namespace render

@@ -7,6 +7,27 @@ namespace render {
 
 namespace {
 
+constexpr Colour dark_ground{0.09, 0.10, 0.13};
+
+/// Ink that is read on that ground, and lines that are seen.
+Theme with_ground(Theme theme, const Colour& ground) {
+  const Theme light;
+  theme.ground = ground;
+  theme.transparent = false;
+  if (theme.is_dark()) {
+    theme.ink = {0.93, 0.94, 0.96};
+    theme.soft = {0.62, 0.65, 0.70};
+  } else {
+    theme.ink = light.ink;
+    theme.soft = light.soft;
+  }
+  const auto towards_ink = [&](double from, double to) { return from + 0.11 * (to - from); };
+  theme.faint = ground == white ? light.faint
+                                : Colour{towards_ink(ground.r, theme.ink.r), towards_ink(ground.g, theme.ink.g),
+                                         towards_ink(ground.b, theme.ink.b)};
+  return theme;
+}
+
 std::vector<Theme> rows() {
   const Theme slides{.name = "slides",
                      .meaning = "for a talk: white, heavy lines, large text, a page of 16:9",
@@ -17,13 +38,9 @@ std::vector<Theme> rows() {
                      .tick = 9,
                      .width = 960,
                      .height = 540};
-  Theme dark = slides;
+  Theme dark = with_ground(slides, dark_ground);
   dark.name = "dark";
   dark.meaning = "for a talk in a dark room: light ink on a dark ground, a page of 16:9";
-  dark.ground = {0.09, 0.10, 0.13};
-  dark.ink = {0.93, 0.94, 0.96};
-  dark.soft = {0.62, 0.65, 0.70};
-  dark.faint = {0.20, 0.22, 0.26};
   return {{.name = "paper", .meaning = "for print: white, fine lines, text of 9 pt, 180 mm wide"}, slides, dark};
 }
 
@@ -40,15 +57,30 @@ Theme find_theme(std::string_view name, double font_size) {
     throw std::invalid_argument("unknown theme '" + std::string(name) + "'" +
                                 sim::suggestion(name, sim::row_names(themes())));
   Theme theme = *row;
-  if (font_size > 0) {
-    const double factor = font_size / theme.text;
-    for (double* size : {&theme.text, &theme.label, &theme.line, &theme.stroke, &theme.tick}) *size *= factor;
-  }
+  return font_size > 0 ? scaled(theme, font_size / theme.text) : theme;
+}
+
+Theme scaled(Theme theme, double factor) {
+  for (double* size : {&theme.text, &theme.label, &theme.line, &theme.stroke, &theme.tick}) *size *= factor;
   return theme;
 }
 
+Theme on_ground_named(Theme theme, std::string_view ground) {
+  if (ground == "theme") return theme;
+  if (ground == "dark") return with_ground(theme, dark_ground);
+  if (ground == "white") return with_ground(theme, white);
+  if (ground == "transparent") {
+    theme.transparent = true;
+    return theme;
+  }
+  if (ground.starts_with('#')) return with_ground(theme, parse_colour(ground));
+  const std::vector<std::string_view> known{"theme", "white", "dark", "transparent"};
+  throw std::invalid_argument("'" + std::string(ground) + "' is no ground of a figure" +
+                              sim::suggestion(ground, known) + ", and not #rrggbb");
+}
+
 Colour on_ground(const Theme& theme, const Colour& c) {
-  if (theme.ground.g > 0.5) return c;
+  if (!theme.is_dark()) return c;
   if (c == Colour{}) return theme.ink;
   const auto lighter = [](double v) { return 0.70 * v + 0.30; };
   return {lighter(c.r), lighter(c.g), lighter(c.b)};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/core/palette.h"
+#include "render/image/text.h"
 
 #include "sim/core/catalogue.h"
 
@@ -21,11 +22,20 @@ struct Theme {
   Colour ink{0.10, 0.10, 0.12};
   Colour soft{0.42, 0.44, 0.48};   ///< secondary elements: references, frames of pictures
   Colour faint{0.90, 0.91, 0.92};  ///< grids
+  bool transparent = false;        ///< the ground is not painted
+  FontFamily family = FontFamily::sans;
+
+  bool is_dark() const { return ground.g < 0.5; }
 };
 const std::vector<Theme>& themes();
 /// Throws std::invalid_argument that names the nearest known theme. font_size: of `text`, in points; everything but
 /// the page scales with it; 0: the theme's own.
 Theme find_theme(std::string_view name, double font_size = 0);
+/// Text and lines times the factor.
+Theme scaled(Theme theme, double factor);
+/// The same on another ground: "theme" (its own), "white", "dark", "transparent" or "#rrggbb"; ink and colours follow.
+/// Throws std::invalid_argument for another word.
+Theme on_ground_named(Theme theme, std::string_view ground);
 
 /// Colours of curves: those of the palette, lightened on a dark ground.
 Colour on_ground(const Theme& theme, const Colour& colour);

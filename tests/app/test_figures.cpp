@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 using Catch::Contains;
@@ -37,12 +39,14 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("every kind of figure is drawn from a trajectory, at the size that is asked for", "[figure]") {
-  const Bench bench;
+  const Bench bench, other({"vesicle.viscosity_contrast=3", "vesicle.reduced_volume=0.8"});
   for (const render::FigureRow& row : render::figures()) {
     INFO(row.name);
     const std::string name(row.name);
-    const support::Outcome drawn = bench.figure(
-        name, {"--size", "320x240px", "--theme", "slides", "--set", "figure.spacing=0.6", "--set", "figure.panels=2"});
+    std::vector<std::string> words{"--size", "320x240px",          "--theme", "slides",
+                                   "--set",  "figure.spacing=0.6", "--set",   "figure.panels=2"};
+    if (row.needs == render::FigureNeeds::diagram) words.insert(words.begin(), other.trajectory);
+    const support::Outcome drawn = bench.figure(name, words);
     INFO(drawn.err);
     REQUIRE(drawn.status == 0);
     for (const char* ending : {".svg", ".pdf", ".csv"}) CHECK(fs::file_size(bench.folder / (name + ending)) > 30);
@@ -115,6 +119,12 @@ TEST_CASE("a figure of tank-treading refuses a vesicle that tumbles and says wha
   CHECK(refused.status == 1);
   CHECK_THAT(refused.err, Contains("t.h5', vesicle 0: it tumbles"));
   CHECK_FALSE(fs::exists(turns.folder / "tank-treading.csv"));
+  // Its angle goes on beyond a right angle, in both figures that show it.
+  REQUIRE(turns.figure("inclination", {}).status == 0);
+  REQUIRE(turns.figure("time-series", {"--set", "figure.quantities=[\"inclination\"]"}).status == 0);
+  const std::string angles = support::read_file(turns.folder / "inclination.csv");
+  CHECK(angles == support::read_file(turns.folder / "time-series.csv"));
+  CHECK(std::stod(angles.substr(angles.rfind(',') + 1)) < -120);
 }
 
 TEST_CASE("curves of scenes of one title are told apart by what differs between them", "[figure]") {
@@ -124,6 +134,61 @@ TEST_CASE("curves of scenes of one title are told apart by what differs between 
     const std::string csv = support::read_file(first.folder / (std::string(kind) + ".csv"));
     CHECK_THAT(csv, Contains("viscosity_contrast = 3,") && Contains("viscosity_contrast = 5,"));
   }
+  CHECK_THAT(first.figure("phase-diagram", {second.trajectory}).err,
+             Contains("differ in two numbers; these differ in vesicle.viscosity_contrast only"));
   REQUIRE(first.figure("phase", {first.trajectory}).status == 0);  // nothing differs
   CHECK_THAT(support::read_file(first.folder / "phase.csv"), Contains("t.h5"));
+}
+
+TEST_CASE("an instant between saved states is interpolated in figures as in stills", "[figure]") {
+  const Bench bench;
+  REQUIRE(bench.figure("overlay", {"--set", "figure.times=[0.1, 0.15, 0.2]"}).status == 0);
+  std::map<double, std::vector<double>> heights;  // of the points of each section, in the order of the curve
+  std::istringstream lines(support::read_file(bench.folder / "overlay.csv"));
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line);)
+    heights[std::stod(line)].push_back(std::stod(line.substr(line.rfind(',') + 1)));
+  REQUIRE(heights.size() == 3);
+  const auto top = [&](double time) { return *std::max_element(heights.at(time).begin(), heights.at(time).end()); };
+  // Between both, and nearer to their middle than to either.
+  const double whole = top(0.2) - top(0.1);
+  CHECK(std::abs(whole) > 1e-4);
+  CHECK((top(0.15) - top(0.1)) / whole == Approx(0.5).margin(0.2));
+}
+
+TEST_CASE("plots below a picture leave its views as they are and mark the time", "[figure]") {
+  const Bench bench;
+  const auto still = [&](const char* name, const char* time, const char* size, bool plots) {
+    std::vector<std::string> words{TANKTREAD_PROGRAM,
+                                   "render",
+                                   bench.trajectory,
+                                   "-o",
+                                   (bench.folder / name).string(),
+                                   "--time",
+                                   time,
+                                   "--size",
+                                   size,
+                                   "--set",
+                                   "view.supersampling=1"};
+    if (plots) words.insert(words.end(), {"--set", "view.plots=[\"energy\"]"});
+    const support::Outcome drawn = support::run(bench.folder, words);
+    INFO(drawn.err);
+    REQUIRE(drawn.status == 0);
+    return render::read_png(bench.folder / name).image;
+  };
+  const render::Image early = still("a.png", "0.1", "320x240", true), late = still("b.png", "0.2", "320x240", true),
+                      alone = still("c.png", "0.2", "320x168", false);
+  CHECK(std::equal(alone.pixels.begin(), alone.pixels.end(), late.pixels.begin()));
+  // The mark: a dark column that one picture has and the other has not.
+  const auto marked = [](const render::Image& a, const render::Image& b) {
+    int last = -1;
+    for (int x = 0; x < a.width; ++x) {
+      int darker = 0;
+      for (int y = 168; y < a.height; ++y) darker += a.at(x, y)[1] + 20 < b.at(x, y)[1];
+      if (darker > 8) last = x;
+    }
+    return last;
+  };
+  CHECK(marked(early, late) > 0);
+  CHECK(marked(late, early) > marked(early, late) + 50);
 }

@@ -3,7 +3,7 @@
 #include "render/figures/plot_marks.h"
 #include "render/image/image.h"
 
-#include "surfaces.h"
+#include "diagrams.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
@@ -15,6 +15,7 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
 
 using sim::Vec3;
 using surfaces::turn;
@@ -41,8 +42,9 @@ render::FigureInput input() {
   in.series[2].axis = "error";
   in.series[2].values = {0, 1e-9, 3e-4};
   in.series[2].scale = render::Scale::logarithmic;
-  render::Plot plot{
-      {"ν", render::Scale::linear, true, true}, {"ω / γ̇", render::Scale::linear, true, true}, {}, {}, {}, {}};
+  render::Plot plot;
+  plot.x = {.label = "ν", .grid = true};
+  plot.y = {.label = "ω / γ̇", .grid = true};
   render::Curve curve;
   curve.name = "published";
   curve.x = {0.7, 0.8, 0.95};
@@ -51,6 +53,7 @@ render::FigureInput input() {
   curve.marker = render::Marker::diamond;
   plot.curves = {curve};
   in.plots = {plot, plot};
+  in.diagram = surfaces::diagram(3);
   for (const render::SheetPanel& p : render::sheet_layout(in).panels)
     in.stills.emplace_back(static_cast<int>(p.width), static_cast<int>(p.height), 3);
   in.flow.x = {-4, 4};
@@ -129,26 +132,20 @@ TEST_CASE("the CSV of cross-sections holds points of the sections") {
   }
 }
 
-TEST_CASE("the inclination of a turned ellipsoid is the angle it was turned by") {
-  const auto rows = table(render::find_figure("inclination").draw(input()).csv);
-  for (std::size_t i = 1; i < rows.size(); ++i)
-    if (rows[i][0] == "λ = 1") CHECK(std::stod(rows[i][3]) == Approx(12.0 * std::stod(rows[i][2]) / 2.5).margin(1e-7));
-}
-
-TEST_CASE("chosen states are spread evenly or lie nearest to the wanted times") {
+TEST_CASE("instants of a figure are spread evenly over the saved states, or those that were asked for") {
   const std::vector<double> times{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   render::FigureParameters p;
   p.panels = 3;
-  CHECK(render::chosen_states(times, p) == std::vector<std::size_t>{0, 5, 10});
+  CHECK(render::chosen_times(times, p) == std::vector<double>{0, 5, 10});
   p.panels = 1;
-  CHECK(render::chosen_states(times, p) == std::vector<std::size_t>{0});
+  CHECK(render::chosen_times(times, p) == std::vector<double>{0});
   p.panels = 40;
-  CHECK(render::chosen_states(times, p).size() == 11);
+  CHECK(render::chosen_times(times, p).size() == 11);
   p.times = {2.2, 9.8};
-  CHECK(render::chosen_states(times, p) == std::vector<std::size_t>{2, 10});
+  CHECK(render::chosen_times(times, p) == p.times);
   p.times = {2.2, 99};
-  CHECK_THROWS_WITH(render::chosen_states(times, p), Catch::Contains("there is no t = 99"));
-  CHECK(render::chosen_states({}, p).empty());
+  CHECK_THROWS_WITH(render::chosen_times(times, p), Catch::Contains("there is no t = 99"));
+  CHECK(render::chosen_times({}, p).empty());
 }
 
 TEST_CASE("ticks are round numbers inside the range") {
@@ -316,12 +313,12 @@ TEST_CASE("numbers of an axis differ from each other, whatever their size and of
 TEST_CASE("instants beyond the trajectory are refused, not moved") {
   render::FigureParameters p;
   p.times = {0.5, 2.5};
-  CHECK_THROWS_WITH(render::chosen_states({0, 1, 2}, p),
+  CHECK_THROWS_WITH(render::chosen_times({0, 1, 2}, p),
                     Catch::Contains("goes from t = 0 to t = 2") && Catch::Contains("2.5"));
   p.times = {std::nan("")};
-  CHECK_THROWS(render::chosen_states({0, 1, 2}, p));
+  CHECK_THROWS(render::chosen_times({0, 1, 2}, p));
   p.times = {2};
-  CHECK(render::chosen_states({0, 1, 2}, p) == std::vector<std::size_t>{2});
+  CHECK(render::chosen_times({0, 1, 2}, p) == std::vector<double>{2});
 }
 
 TEST_CASE("text of a figure is text in PDF and SVG, and the PNG says its dots per inch") {
@@ -359,4 +356,104 @@ TEST_CASE("text of a figure is text in PDF and SVG, and the PNG says its dots pe
   CHECK(number(at + 4) == 11811);  // 300 / 0.0254 m
   CHECK(number(at + 8) == 11811);
   CHECK(png[at + 12] == 1);
+}
+
+TEST_CASE("variables are in italics, words, numbers, units and names of operators are not") {
+  const auto italics = [](const char* text) {
+    std::string found;
+    for (const render::TextRun& run : render::text_runs(text))
+      if (run.italic) found += (found.empty() ? "" : " ") + run.text;
+    return found;
+  };
+  CHECK(italics("γ̇t = 2.5") == "γ̇t");
+  CHECK(italics("inclination θ (°)") == "θ");
+  CHECK(italics("E / 8πκ") == "E κ");
+  CHECK(italics("σR_{0}^{2}/κ_{b}") == "σR κ");
+  CHECK(italics("(dθ/dt) / γ̇") == "θ t γ̇");
+  CHECK(italics("γ̇Δt") == "γ̇ t");
+  CHECK(italics("E_{n} of the mean curvature") == "E n");
+  CHECK(italics("D = (L − B) / (L + B)") == "D L B L B");
+  CHECK(italics("(a)  a panel of a figure, 5 m wide, e.g. run B") == "");
+  CHECK(italics("Αριστοτέλης, a vesicle's λ") == "λ");
+}
+
+TEST_CASE("text as paths leaves no text in SVG and no font in PDF, and looks the same") {
+  const support::TemporaryFolder folder;
+  render::FigureInput in = input();
+  const render::Figure text = render::find_figure("overlay").draw(in);
+  in.parameters.text = "paths";
+  const render::Figure paths = render::find_figure("overlay").draw(in);
+  const auto written = render::write_figure(paths, folder / "paths"),
+             usual = render::write_figure(text, folder / "text");
+  CHECK(support::read_file(usual[1]).find("<text") != std::string::npos);
+  CHECK(support::read_file(written[1]).find("<text") == std::string::npos);
+  CHECK(support::read_file(written[2]).find("FontFile") == std::string::npos);
+  CHECK((support::read_file(written[0]) == support::read_file(usual[0])));
+}
+
+TEST_CASE("title and scene of a figure are in all of its pictures") {
+  const support::TemporaryFolder folder;
+  render::Figure figure = render::find_figure("overlay").draw(input());
+  figure.drawing.title = "overlay: shear & <more>";
+  figure.drawing.subject = "[flow]\nrate = 1";
+  const auto files = render::write_figure(figure, folder / "f");
+  const auto text = render::read_png_text(files[0]);
+  const auto holds = [&](const char* key, const std::string& value) {
+    return std::find(text.begin(), text.end(), std::pair<std::string, std::string>(key, value)) != text.end();
+  };
+  CHECK(holds("Title", figure.drawing.title));
+  CHECK(holds("Description", figure.drawing.subject));
+  CHECK_THAT(support::read_file(files[1]), Catch::Contains("<title>overlay: shear &amp; &lt;more&gt;</title>"));
+  CHECK_THAT(support::read_file(files[2]),
+             Catch::Contains("/Title (overlay: shear & <more>)") &&
+                 Catch::Contains("<FEFF005B0066006C006F0077005D000A"));  // UTF-16: "[flow]" and a new line
+}
+
+TEST_CASE("a page without ground is transparent, another ground is where nothing is drawn, and ink is seen on it") {
+  const support::TemporaryFolder folder;
+  render::FigureInput in = input();
+  in.parameters.ground = "transparent";
+  render::write_drawing_png(folder / "f.png", render::find_figure("time-series").draw(in).drawing);
+  const render::Image clear = render::read_png(folder / "f.png").image;
+  REQUIRE(clear.channels == 4);
+  CHECK(clear.at(0, 0)[3] == 0);
+  int solid = 0;
+  for (int y = 0; y < clear.height; ++y)
+    for (int x = 0; x < clear.width; ++x) solid += clear.at(x, y)[3] == 255;
+  CHECK(solid > 1000);
+  for (const char* ground : {"white", "dark", "#204080", "#e0f0e0"}) {
+    INFO(ground);
+    const render::Theme theme = render::on_ground_named(render::find_theme("paper"), ground);
+    CHECK(std::abs(theme.ink.g - theme.ground.g) > 0.6);
+    in.parameters.ground = ground;
+    render::write_drawing_png(folder / "g.png", render::find_figure("time-series").draw(in).drawing);
+    const render::Image image = render::read_png(folder / "g.png").image;
+    CHECK(std::abs(image.at(0, 0)[1] - 255 * theme.ground.g) < 1.01);
+  }
+  CHECK_THAT(support::message_of([] { render::on_ground_named(render::find_theme("paper"), "drak"); }),
+             Catch::Contains("did you mean 'dark'"));
+}
+
+TEST_CASE("letters that no font has are told") {
+  render::Drawing drawing{200, 60, nullptr, render::white, 300};
+  drawing.paint = [](cairo_t* cairo, const render::Font& font) {
+    render::draw_text(cairo, font, 12, 10, 30, "λ = 1, \U0010fffd\U0010fffd");  // private use
+  };
+  CHECK(render::missing_letters(drawing) == "\U0010fffd");
+}
+
+TEST_CASE("a legend within a panel lies where no curve runs, or nowhere") {
+  render::Panel panel;
+  panel.x = panel.y = {0, 1};
+  using Curves = std::vector<std::pair<std::vector<double>, std::vector<double>>>;
+  const Curves diagonal{{{0, 1}, {0, 1}}},
+      cross{{{0, 1}, {0, 1}}, {{0, 1}, {1, 0}}, {{0.5, 0.5}, {0, 1}}, {{0, 1}, {0.5, 0.5}}};
+  const auto place = render::free_place(panel, {40, 20}, diagonal, 2);
+  REQUIRE(place.has_value());
+  // A line from the lower left to the upper right: the nearest corner of the rectangle is farther from it than 2 pt.
+  const double apart =
+      std::min(std::abs(place->x() + 40 - (100 - (place->y() + 20))), std::abs(place->x() - (100 - place->y())));
+  CHECK(apart / std::sqrt(2.0) >= 2);
+  CHECK_FALSE(render::free_place(panel, {60, 40}, cross, 2).has_value());
+  CHECK_FALSE(render::free_place(panel, {101, 5}, {}, 0).has_value());
 }
