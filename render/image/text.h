@@ -2,6 +2,8 @@
 // everywhere; in PDF and SVG it stays text, which can be searched and edited.
 #pragma once
 
+#include "render/core/palette.h"
+
 #include <cairo.h>
 
 #include <memory>
@@ -56,9 +58,9 @@ std::vector<TextRun> text_runs(std::string_view text);
 /// superscript. Returns the advance width. size: of the em square, in user units.
 double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
                  Align align = Align::left);
-/// The same with a soft white rim, for text that may lie on a vesicle.
-double draw_text_on_picture(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
-                            Align align = Align::left);
+/// The same with a soft rim, for text that may lie on a vesicle.
+double draw_text_on_picture(cairo_t* cairo, const Font& font, const Colour& rim, double size, double x, double y,
+                            std::string_view text, Align align = Align::left);
 double text_width(cairo_t* cairo, const Font& font, double size, std::string_view text);
 
 /// Shortest conventional decimal form: "0.5", "-1", "10^{-3}", with a true minus sign; at most `digits` digits.

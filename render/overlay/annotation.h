@@ -1,18 +1,19 @@
 // Annotations of a picture besides its captions: axes, profile of the background flow, cross-section.
 #pragma once
 
+#include "render/core/ground.h"
 #include "render/image/picture_canvas.h"
 #include "render/scene/frame.h"
 
 namespace render {
 
 /// Directions of x, y, z in the lower right corner; an axis along the line of sight is a dot or a cross in a ring.
-void draw_triad(Image& image, const Font& font, const Camera& camera);
+void draw_triad(Image& image, const Font& font, const Inks& inks, const Camera& camera);
 
 /// Arrows between a vertical line and the profile, at the left edge of the picture.
-void draw_flow_profile(Image& image, const Font& font, const FlowProfile& profile);
+void draw_flow_profile(Image& image, const Font& font, const Inks& inks, const FlowProfile& profile);
 
 /// The (x, z) cross-section in a box in the upper right corner.
-void draw_inset(Image& image, const Font& font, const Inset& inset);
+void draw_inset(Image& image, const Font& font, const Inks& inks, const Inset& inset);
 
 }  // namespace render

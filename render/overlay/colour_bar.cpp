@@ -59,7 +59,7 @@ BarPlace colour_bar_place(const Image& image, const Font& font, const Legend& le
           .height = height};
 }
 
-void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool sign_dots) {
+void draw_colour_bar(Image& image, const Font& font, const Inks& inks, const Legend& legend, bool sign_dots) {
   const Sizes s = sizes_of(image);
   const BarPlace bar = colour_bar_place(image, font, legend);
   const double point = 0.9 * bar.width;  // of the ends
@@ -98,7 +98,7 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool 
                   cairo_fill(cairo);
                 }
             }
-            set_colour(cairo, ink);
+            set_colour(cairo, inks.text);
             cairo_set_line_width(cairo, std::max(1.5 * image.height / 1080.0, 0.8));
             cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
             cairo_move_to(cairo, bar.left, bottom);
@@ -114,17 +114,17 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool 
             for (std::size_t k = 0; k < ticks.size(); ++k) {
               const double value = ticks[k];
               const double y = bottom - (value - legend.low) / (legend.high - legend.low) * bar.height;
-              set_colour(cairo, ink);
+              set_colour(cairo, inks.text);
               cairo_move_to(cairo, bar.left + bar.width, y);
               cairo_line_to(cairo, bar.left + bar.width + s.tick, y);
               cairo_stroke(cairo);
-              draw_text_on_picture(cairo, font, s.text, bar.left + bar.width + s.tick + s.gap, y + 0.36 * s.text,
-                                   texts[k]);
+              draw_text_on_picture(cairo, font, inks.rim, s.text, bar.left + bar.width + s.tick + s.gap,
+                                   y + 0.36 * s.text, texts[k]);
             }
             // centred above the bar as far as the edge of the picture allows
             const double width = text_width(cairo, font, 1.1 * s.text, legend.label);
             const double x = std::min(middle - width / 2, image.width - s.margin - width);
-            draw_text_on_picture(cairo, font, 1.1 * s.text, x, label, legend.label);
+            draw_text_on_picture(cairo, font, inks.rim, 1.1 * s.text, x, label, legend.label);
           });
 }
 

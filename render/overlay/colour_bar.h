@@ -1,6 +1,7 @@
 // The colour bar at the right edge of a picture.
 #pragma once
 
+#include "render/core/ground.h"
 #include "render/image/picture_canvas.h"
 #include "render/scene/frame.h"
 
@@ -15,6 +16,6 @@ struct BarPlace {
 };
 BarPlace colour_bar_place(const Image& image, const Font& font, const Legend& legend);
 
-void draw_colour_bar(Image& image, const Font& font, const Legend& legend, bool sign_dots = false);
+void draw_colour_bar(Image& image, const Font& font, const Inks& inks, const Legend& legend, bool sign_dots = false);
 
 }  // namespace render

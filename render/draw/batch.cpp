@@ -1,0 +1,116 @@
+#include "render/draw/batch.h"
+
+#include "render/draw/depth_order.h"
+#include "render/draw/draw_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace render {
+namespace {
+
+constexpr double tracer_radius = 0.088;  // area radii
+
+glm::vec3 eye_place(const Camera& camera, const glm::dvec3& point) {
+  return camera.view * glm::vec4(glm::vec3(camera.place(point)), 1);
+}
+
+// From pole to pole of the label, so that the dots are as dense as on the bar. In half octaves: a camera that moves
+// does not shift them all the time.
+double sign_dot_rows(const Frame& frame, const Body& body) {
+  const double radius = body.mesh.area_radius / frame.camera.half_height * frame.view.size[1] / 2;  // px
+  const double wanted = std::numbers::pi * radius / sign_dot_spacing(frame.view.size[1]);
+  return std::max(4.0, std::round(std::exp2(std::round(2 * std::log2(wanted)) / 2)));
+}
+
+template <class T>
+void repeat(std::vector<T>& all, std::size_t count, const T& value) {
+  all.insert(all.end(), count, value);
+}
+
+template <class T>
+void extend(std::vector<T>& all, const std::vector<T>& some) {
+  all.insert(all.end(), some.begin(), some.end());
+}
+
+void append_tracers(Batch& batch, const Camera& camera, const Mesh& mesh) {
+  std::vector<glm::vec4> places;
+  for (const Mesh::Tracer& t : mesh.tracers) places.emplace_back(eye_place(camera, t.position), t.bright ? 1.0F : 0.0F);
+  const auto place = [&](float k) { return k < 0 ? glm::vec4(0, 0, 0, -1) : places[static_cast<std::size_t>(k)]; };
+  for (const glm::vec2& nearest : nearest_tracers(mesh)) {
+    batch.dot.push_back(place(nearest.x));
+    batch.next_dot.push_back(place(nearest.y));
+  }
+}
+
+void append_field(Batch& batch, const Frame& frame, const Body& body, bool sign_dots) {
+  if (!frame.legend || body.mesh.scalar.size() != body.mesh.position.size())
+    throw std::invalid_argument("the style 'field' needs a legend, and a scalar on every mesh");
+  const double low = frame.legend->low, width = frame.legend->high - low;
+  const auto rows = static_cast<float>(sign_dots ? sign_dot_rows(frame, body) : 0);
+  for (const double value : body.mesh.scalar) batch.field.emplace_back((value - low) / width, rows);
+}
+
+}  // namespace
+
+Detail detail_in(const Frame& frame, const Body& body) {
+  const Mesh& mesh = body.mesh;
+  const glm::dvec3 middle = (mesh.position[mesh.position.size() - 2] + mesh.position.back()) / 2.0;  // of the poles
+  return detail_of(frame.view, mesh.area_radius * pixels_at(frame.camera, middle, frame.view.size[1]));
+}
+
+Variant variant_of(const Frame& frame, const Body& body, const Detail& detail) {
+  const StyleRow& style = find_style(frame.view.style);
+  return {.grid = detail.lines > 0 || detail.few_lines > 0,
+          .sparse = detail.lines < 1,
+          .tracers = style.tracers && frame.view.tracers && !body.mesh.tracers.empty() && detail.tracers > 0,
+          .sign_dots = style.field && frame.legend && frame.legend->mirrored && frame.view.sign_dots};
+}
+
+Colour outline_colour(const Frame& frame, const Body& body) {
+  const Colour& c = body.colour;
+  if (ground_of(frame.view.background).dark()) return {0.50 + 0.40 * c.r, 0.50 + 0.40 * c.g, 0.51 + 0.40 * c.b};
+  if (find_style(frame.view.style).see_through) {
+    const glm::vec3 l = linear(c);
+    return {0.10 + 0.08 * static_cast<double>(l.r), 0.11 + 0.08 * static_cast<double>(l.g),
+            0.14 + 0.08 * static_cast<double>(l.b)};
+  }
+  return {0.10 + 0.08 * c.r, 0.11 + 0.08 * c.g, 0.14 + 0.08 * c.b};
+}
+
+void append(Batch& batch, const Frame& frame, const Body& body, const Detail& detail, const Variant& variant,
+            int samples_high, bool with_triangles) {
+  const StyleRow& style = find_style(frame.view.style);
+  const Mesh& mesh = body.mesh;
+  const Camera& camera = frame.camera;
+  const std::size_t count = mesh.position.size();
+  const auto first = static_cast<std::uint32_t>(batch.position.size());
+  for (const glm::dvec3& p : mesh.position) batch.position.emplace_back(camera.place(p));
+  extend(batch.normal, mesh.normal);
+  extend(batch.label, frame.view.lines == "grid" ? mesh.plan->parameters() : mesh.label);
+  repeat(batch.paint, count, glm::vec4(linear(style.own_colour ? body.colour : white), detail.outline));
+  if (variant.tracers) append_tracers(batch, camera, mesh);
+  if (variant.tracers || variant.sparse)
+    repeat(batch.detail, count,
+           glm::vec4(detail.lines, detail.few_lines, tracer_radius * mesh.area_radius / camera.half_height,
+                     detail.tracers));
+  if (style.field) append_field(batch, frame, body, variant.sign_dots);
+  if (style.cut) {
+    glm::vec4 plane(0, 0, 0, -1);  // of nothing
+    if (body.cut) plane = glm::vec4(body.cut->normal, -glm::dot(body.cut->normal, camera.place(body.cut->point)));
+    repeat(batch.cut, count, plane);
+  }
+  if (frame.view.outline_width > 0) {
+    repeat(batch.contour, count, vector_of(outline_colour(frame, body)));
+    if (style.cut || style.see_through) {
+      const double width = detail.outline * samples(frame.view, frame.view.outline_width, 1.0);
+      extend(batch.from_contour, contour_distances(mesh, camera, samples_high / 2.0, width + 6));
+    }
+  }
+  if (!with_triangles) return;
+  for (const std::uint32_t k : mesh.plan->indices()) batch.indices.push_back(first + k);
+}
+
+}  // namespace render
