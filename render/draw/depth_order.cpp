@@ -160,6 +160,8 @@ std::vector<float> contour_distances(const Mesh& mesh, const Camera& camera, dou
     }
     // longer by itself at both ends: what is beside an end may never hear of the next piece
     const glm::vec2 along = crossings[1] - crossings[0];
+    constexpr float corner = 0.02F;  // samples: one that only touches the contour has no direction
+    if (glm::length(along) < corner) continue;
     contour.push_back({crossings[0] - along, crossings[1] + along});
     for (std::size_t k = 0; k < 3; ++k) offer(indices[i + k], static_cast<std::uint32_t>(contour.size() - 1));
   }
