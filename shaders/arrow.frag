@@ -7,5 +7,5 @@ uniform float u_height;  // of the picture, samples
 void main() {
   vec3 v = u_perspective ? normalize(-v_eye) : vec3(0.0, 0.0, 1.0);
   vec3 colour = encode(lit(u_colour, normalize(v_normal), v, 0.25));
-  f_colour = vec4(mix(ground(gl_FragCoord.y / u_height), colour, v_shown), 1.0);
+  f_colour = mix(ground(gl_FragCoord.y / u_height), vec4(colour, 1.0), v_shown);
 }

@@ -8,21 +8,32 @@
 //   SIGN_DOTS   with FIELD: dots on the lower half of the map
 //   CUTAWAY     both sides, opened by a plane
 //   CONTOUR     the inner edge of the outline; with GHOST and CUTAWAY the whole outline
-//   TRACERS     number of tracer dots
+//   TRACERS     tracer dots
+//   SPARSE      with GRID: vesicles so small that their lines fade to a few, or to none
+//   DEPTH_CUE   fades into the ground with the distance
 in vec3 v_eye, v_normal, v_label;
+flat in vec3 v_paint;  // linear
 out vec4 f_colour;
 #ifdef GHOST
-flat in vec3 v_colour;    // linear
 uniform float u_opacity;  // seen straight on
-#else
-uniform vec3 u_colour;  // linear
 #endif
-uniform vec3 u_line_colour;  // linear; with GHOST black, to which a share of the membrane's own colour is added
+uniform vec3 u_line_colour;  // linear; a share of the membrane's own colour is added
 uniform float u_half_width;  // of lines, samples
 uniform bool u_perspective;
 #ifdef CONTOUR
-uniform vec3 u_contour;        // sRGB
-uniform float u_contour_width; // samples, where the whole outline is drawn here
+flat in vec3 v_contour;  // sRGB
+#if defined(GHOST) || defined(CUTAWAY)
+uniform float u_contour_width;  // samples: the whole outline is drawn here
+in float v_from_contour;
+flat in float v_contour_share;
+#endif
+#endif
+#if defined(TRACERS) || defined(SPARSE)
+flat in vec4 v_detail;
+#endif
+#ifdef DEPTH_CUE
+in float v_near;
+uniform float u_height;  // of the picture, samples
 #endif
 #ifdef FIELD
 in float v_scalar;
@@ -64,17 +75,12 @@ float sign_dot(LabelPoint p, float shown) {
 #ifdef TRACERS
 flat in vec4 v_dot, v_next_dot;  // the two tracers nearest to this triangle: eye space, w: 1 bright, 0 dark, -1 none
 uniform vec3 u_tracer_bright, u_tracer_dark;
-uniform float u_tracer_radius;
 #endif
 
 void main() {
   vec3 n = normalize(v_normal);
   vec3 v = u_perspective ? normalize(-v_eye) : vec3(0.0, 0.0, 1.0);
-#ifdef GHOST
-  vec3 albedo = v_colour, line_colour = u_line_colour + 0.07 * v_colour;
-#else
-  vec3 albedo = u_colour, line_colour = u_line_colour;
-#endif
+  vec3 albedo = v_paint, line_colour = u_line_colour + 0.07 * v_paint;
   float gloss = 1.0;
 #if defined(GHOST) || defined(CUTAWAY)
   bool front = gl_FrontFacing;
@@ -123,6 +129,9 @@ void main() {
   line = max(line, meridians(p, u_half_width));
   line = max(line, pole_dot(p, u_half_width));
 #endif
+#ifdef SPARSE
+  line = max(v_detail.x * line, v_detail.y * few_lines(p, u_half_width));
+#endif
 #ifdef FIELD
   // Lines must show on both ends of a map and leave its colours in between alone.
   float luma = dot(value, vec3(0.2126, 0.7152, 0.0722));
@@ -154,9 +163,9 @@ void main() {
   float r = max(length(away), 1e-9);
   // change of r across one sample, from the derivatives of the position: those of r jump between dots
   float sample_size = max(length(vec2(dot(dFdx(v_eye), away), dot(dFdy(v_eye), away))) / r, 1e-9);
-  float shown = bright < 0.0 ? 0.0 : 1.0;
-  float ring = shown * (1.0 - smoothstep(-0.6, 0.6, (r - u_tracer_radius) / sample_size));
-  float core = shown * (1.0 - smoothstep(-0.6, 0.6, (r - (bright > 0.5 ? 0.78 : 0.66) * u_tracer_radius) / sample_size));
+  float shown = bright < 0.0 ? 0.0 : v_detail.w, radius = v_detail.z;
+  float ring = shown * (1.0 - smoothstep(-0.6, 0.6, (r - radius) / sample_size));
+  float core = shown * (1.0 - smoothstep(-0.6, 0.6, (r - (bright > 0.5 ? 0.78 : 0.66) * radius) / sample_size));
   albedo = mix(albedo, bright > 0.5 ? u_tracer_dark : vec3(0.95), ring);  // the marked one is told apart in grey, too
   albedo = mix(albedo, bright > 0.5 ? u_tracer_bright : u_tracer_dark, core);
   gloss = mix(gloss, 0.45, ring);
@@ -182,22 +191,26 @@ void main() {
   float cosine = dot(n, v), square = cosine * cosine;
   float to_contour = square / max(length(vec2(dFdx(square), dFdy(square))), 1e-9);
 #if defined(GHOST) || defined(CUTAWAY)
-  float contour = 1.0 - smoothstep(u_contour_width - 0.7, u_contour_width + 0.7, to_contour);
+  // Where the membrane is nearly edge-on without turning over there is no contour, though the cosine is small.
+  float contour_width = v_contour_share * u_contour_width;
+  float turns_over = 1.0 - smoothstep(contour_width + 1.0, contour_width + 4.0, v_from_contour);
+  float contour = turns_over * (1.0 - smoothstep(contour_width - 0.7, contour_width + 0.7, to_contour));
 #else
   float contour = 1.0 - smoothstep(0.2, 1.5, to_contour);
 #endif
-  #ifdef GHOST
-  colour = mix(colour, u_contour + 0.08 * v_colour, contour);
-#else
-  colour = mix(colour, u_contour, contour);
-#endif
+  colour = mix(colour, v_contour, contour);
 #ifdef GHOST
   alpha = mix(alpha, max(alpha, front ? 1.0 : drawn), contour);
-  alpha *= smoothstep(-0.3, 1.3, to_contour);  // the outer edge is that of a polygon: a shade between
+  alpha *= mix(1.0, smoothstep(-0.3, 1.3, to_contour), turns_over);  // the edge of a polygon: a shade between
 #endif
 #endif
 #ifdef GHOST
+#ifdef DEPTH_CUE
+  alpha *= v_near;
+#endif
   f_colour = vec4(colour, alpha);
+#elif defined(DEPTH_CUE)
+  f_colour = mix(ground(gl_FragCoord.y / u_height), vec4(colour, 1.0), v_near);
 #else
   f_colour = vec4(colour, 1.0);
 #endif

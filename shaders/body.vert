@@ -1,56 +1,69 @@
-// A membrane: everything else happens in the fragment shader.
+// Membranes, all in one draw: what differs from one to the next comes with the vertices.
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec3 a_label;
-#ifdef GHOST
-// Triangles of all membranes in one draw: what differs from one to the next comes with the vertices.
-layout(location = 5) in vec3 a_colour;  // linear
-flat out vec3 v_colour;
-#endif
+layout(location = 5) in vec4 a_paint;  // linear colour; share of the contour's width
+flat out vec3 v_paint;
 #ifdef TRACERS
-#ifdef GHOST
-layout(location = 3) in vec4 a_dot;
+layout(location = 3) in vec4 a_dot;  // the two tracers nearest to this vertex: eye space, w: 1 bright, 0 dark, -1 none
 layout(location = 4) in vec4 a_next_dot;
-#else
-layout(location = 3) in vec2 a_dots;  // indices of the two nearest tracers; -1: none faces this way
-uniform vec4 u_tracer[TRACERS];      // eye space, w: 1 bright, 0 dark
-#endif
 flat out vec4 v_dot, v_next_dot;
 #endif
+#if defined(TRACERS) || defined(SPARSE)
+layout(location = 6) in vec4 a_detail;  // weights of all lines and of the few; radius and weight of the tracers
+flat out vec4 v_detail;
+#endif
 #ifdef FIELD
-layout(location = 6) in float a_scalar;  // share of the colour bar
+layout(location = 7) in float a_scalar;  // share of the colour bar
 out float v_scalar;
 #endif
 #ifdef CUTAWAY
-uniform vec4 u_cut;  // the half space u_cut . (x, 1) > 0 is taken away
+layout(location = 8) in vec4 a_cut;  // the half space a_cut . (x, 1) > 0 is taken away
+#endif
+#ifdef CONTOUR
+layout(location = 10) in vec3 a_contour;  // sRGB
+flat out vec3 v_contour;
+#endif
+#if defined(CONTOUR) && (defined(GHOST) || defined(CUTAWAY))
+layout(location = 9) in float a_from_contour;  // samples along the membrane, as the picture shows it
+out float v_from_contour;
+flat out float v_contour_share;
 #endif
 uniform mat4 u_view, u_projection;
 out vec3 v_eye;     // position in eye space
 out vec3 v_normal;  // eye space
 out vec3 v_label;   // on the unit sphere
+#ifdef DEPTH_CUE
+out float v_near;
+#endif
 void main() {
   vec4 eye = u_view * vec4(a_position, 1.0);
   v_eye = eye.xyz;
   v_normal = mat3(u_view) * a_normal;
   v_label = a_label;
-#ifdef GHOST
-  v_colour = a_colour;
-#endif
+  v_paint = a_paint.rgb;
 #ifdef TRACERS
-#ifdef GHOST
   v_dot = a_dot;
   v_next_dot = a_next_dot;
-#else
-  const vec4 none = vec4(0.0, 0.0, 0.0, -1.0);
-  v_dot = a_dots.x < 0.0 ? none : u_tracer[int(a_dots.x)];
-  v_next_dot = a_dots.y < 0.0 ? none : u_tracer[int(a_dots.y)];
 #endif
+#if defined(TRACERS) || defined(SPARSE)
+  v_detail = a_detail;
 #endif
 #ifdef FIELD
   v_scalar = a_scalar;
 #endif
 #ifdef CUTAWAY
-  gl_ClipDistance[0] = -dot(u_cut, vec4(a_position, 1.0));
+  gl_ClipDistance[0] = -dot(a_cut, vec4(a_position, 1.0));
+#endif
+#ifdef CONTOUR
+  v_contour = a_contour;
+#endif
+#if defined(CONTOUR) && (defined(GHOST) || defined(CUTAWAY))
+  v_from_contour = a_from_contour;
+  v_contour_share = a_paint.w;
+#endif
+#ifdef DEPTH_CUE
+  v_near = near_share(eye.z);
 #endif
   gl_Position = u_projection * eye;
 }

@@ -67,3 +67,11 @@ float pole_dot(LabelPoint p, float half_width) {
   return coverage(p.sine / max(length(gradient), 1e-9), 2.6 * half_width);
 }
 #endif
+
+#ifdef SPARSE
+// What stays of the lines on small vesicles: the equator and four meridians.
+float few_lines(LabelPoint p, float half_width) {
+  return max(parallel_line(p, 0.5 * pi, half_width),
+             max(meridian_line(p, 0.0, half_width), meridian_line(p, 0.5 * pi, half_width)));
+}
+#endif

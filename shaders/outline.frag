@@ -1,4 +1,14 @@
+//   DEPTH_CUE   fades into the ground with the distance
+flat in vec3 v_outline;
+in float v_near;
 out vec4 f_colour;
-uniform vec3 u_colour;  // sRGB
-uniform float u_alpha;
-void main() { f_colour = vec4(u_colour, u_alpha); }
+uniform float u_alpha;   // 1: the core, which hides what is behind it
+uniform float u_height;  // of the picture, samples
+void main() {
+#ifdef DEPTH_CUE
+  f_colour = u_alpha < 1.0 ? vec4(v_outline, u_alpha * v_near)
+                           : mix(ground(gl_FragCoord.y / u_height), vec4(v_outline, 1.0), v_near);
+#else
+  f_colour = vec4(v_outline, u_alpha);
+#endif
+}

@@ -27,6 +27,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 namespace app {
@@ -130,7 +131,7 @@ class Recorder {
   }
 
   /// Everything that the page knows of the trajectory; `bytes` are the series, as the rows below count them.
-  void write(Members& page) const {
+  void write(Members& page, const render::Ground& ground) const {
     std::string bytes;
     const auto series = [&](const PageSeries& s) {
       bytes += s.bytes();
@@ -142,8 +143,8 @@ class Recorder {
       const render::Colour& own = panel_.painting.bodies[v];
       Members m;
       m.vector("colour", render::linear(own));
-      m.vector("line", render::line_colour(render::linear(own)));
-      m.vector("contour", render::vector_of(render::outline_colour(own)));
+      m.vector("contour", render::vector_of(render::outline_colour(own, ground, false)));
+      m.vector("soft_contour", render::vector_of(render::outline_colour(own, ground, true)));
       m.number("radius", radii_[v]);
       m.raw("breaks", fmt::format("[{}]", fmt::join(s.breaks, ",")));
       m.raw("position", series(s.position));
@@ -240,8 +241,9 @@ void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
     style.text("name", row.name);
     style.text("meaning", row.meaning);
     const bool dots = row.field && panel.painting.legend->mirrored && panel.view.sign_dots;
-    style.text("defines", render::body_defines(row, panel.view, tracers, dots));
-    style.flag("tracers", row.tracers && panel.view.tracers && tracers > 0);
+    const bool marked = row.tracers && panel.view.tracers && tracers > 0;
+    style.text("defines", render::body_defines(row, panel.view, true, false, marked, dots));
+    style.flag("tracers", marked);
     style.flag("own_colour", row.own_colour);
     style.flag("see_through", row.see_through);
     style.flag("field", row.field);
@@ -252,12 +254,15 @@ void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
 
 void write_shaders(Members& page) {
   Members files, libraries;
-  for (const char* program : {"ground", "body", "outline", "arrow"}) {
-    libraries.raw(program, texts_of(render::shader_libraries(program)));
-    std::vector<std::string> names = render::shader_libraries(program);
-    names.insert(names.end(), {std::string(program) + ".vert", std::string(program) + ".frag"});
-    for (const std::string& name : names) files.text(name, render::shader_text(name, {}));
-  }
+  std::set<std::string> names;
+  for (const std::string program : {"ground", "body", "outline", "arrow"})
+    for (const std::string& file : {program + ".vert", program + ".frag"}) {
+      const std::vector<std::string> before = render::shader_libraries(file);
+      libraries.raw(file, texts_of(before));
+      names.insert(before.begin(), before.end());
+      names.insert(file);
+    }
+  for (const std::string& name : names) files.text(name, render::shader_text(name, {}));
   page.raw("shaders", files.whole());
   page.raw("libraries", libraries.whole());
   const render::ArrowShape arrow = render::arrow_shape();
@@ -270,13 +275,11 @@ void write_shaders(Members& page) {
 /// What the passes of draw_frame() set.
 void write_paint(Members& page, const render::ViewParameters& view) {
   Members paint;
-  const bool is_white = view.background == "white";
-  paint.vector("top", render::vector_of(is_white ? render::white : render::ground_top));
-  paint.vector("bottom", render::vector_of(is_white ? render::white : render::ground_bottom));
-  paint.vector("arrow", render::linear(render::arrow_colour));
+  const render::Ground ground = render::ground_of(view.background);
+  paint.vector("top", render::vector_of(ground.top));
+  paint.vector("bottom", render::vector_of(ground.bottom));
+  paint.vector("arrow", render::linear(render::inks_on(ground).arrow));
   paint.vector("line_ink", render::line_ink);
-  paint.vector("outline_ink", render::outline_ink);
-  paint.vector("white_line", render::line_colour(render::linear(render::white)));
   paint.vector("tracer_bright", render::linear(render::tracer_bright));
   paint.vector("tracer_dark", render::linear(render::tracer_dark));
   paint.number("tracer_radius", render::tracer_radius);
@@ -360,7 +363,7 @@ std::string page_text(const sim::TrajectoryReader& trajectory, const Settings& s
   write_styles(page, panel, tracers);
   write_legend(page, panel);
   write_shaders(page);
-  recorder.write(page);
+  recorder.write(page, render::ground_of(panel.view.background));
   std::string data;
   for (const char c : page.whole())
     data += c == '<' ? "\\u003c" : std::string(1, c);  // so that no text ends the script

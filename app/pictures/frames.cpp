@@ -7,6 +7,7 @@
 #include "app/pictures/movie.h"
 #include "app/scene/output.h"
 
+#include "render/core/ground.h"
 #include "sim/core/digits.h"
 
 #include <fmt/format.h>
@@ -153,7 +154,9 @@ Job prepare(const std::vector<PictureSource>& sources, OwnedFiles& files, const 
           .settings = settings,
           .format = format,
           .movie = movie_name(format)};
-  if (job.whole()) check_movie(format, settings.view.size[0], settings.view.size[1]);
+  if (job.whole())
+    check_movie(format, settings.view.size[0], settings.view.size[1],
+                render::ground_of(settings.view.background).transparent);
   job.production = prepare_pictures(sources, {}, plots);
   job.times = frame_times(longest(sources).trajectory, settings.movie);
   adopt_movie(files, job.movie);
@@ -190,7 +193,7 @@ void remove_other_frames(const Job& job) {
 void start(Film& film, const Job& job) {
   try {
     film.encoder.emplace(job.format, job.files, job.production.width, job.production.height,
-                         job.settings.movie.frame_rate);
+                         job.settings.movie.frame_rate, render::ground_of(job.settings.view.background).transparent);
     remove_movie(job.files, job.movie);
   } catch (const FfmpegMissing& missing) {
     film.report.remark = missing.what();

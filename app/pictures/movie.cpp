@@ -20,17 +20,18 @@ namespace {
 
 /// One thread and no dates: the same frames give the same file.
 std::vector<std::string> arguments(const MovieFormat& format, const std::filesystem::path& draft, int width, int height,
-                                   double frame_rate) {
+                                   double frame_rate, bool transparent) {
   std::vector<std::string> words{"ffmpeg",     "-hide_banner",
                                  "-loglevel",  "error",
                                  "-nostdin",   "-y",
                                  "-f",         "rawvideo",
-                                 "-pix_fmt",   "rgb24",
+                                 "-pix_fmt",   transparent ? "rgba" : "rgb24",
                                  "-s",         fmt::format("{}x{}", width, height),
                                  "-framerate", fmt::format("{}", frame_rate),
                                  "-i",         "pipe:0",
                                  "-an"};
-  words.insert(words.end(), format.encoder.begin(), format.encoder.end());
+  const std::vector<std::string>& encoder = transparent ? format.transparent_encoder : format.encoder;
+  words.insert(words.end(), encoder.begin(), encoder.end());
   if (frame_rate > format.fastest) words.insert(words.end(), {"-r", fmt::format("{}", format.fastest)});
   words.insert(words.end(), {"-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1",
                              "-f", std::string(format.muxer), draft.string()});
@@ -47,8 +48,14 @@ sim::Draft draft_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
-MovieEncoder::MovieEncoder(const MovieFormat& format, OwnedFiles& folder, int width, int height, double frame_rate)
-    : folder_(folder), name_(movie_name(format)), draft_(draft_in(folder.folder())), width_(width), height_(height) {
+MovieEncoder::MovieEncoder(const MovieFormat& format, OwnedFiles& folder, int width, int height, double frame_rate,
+                           bool transparent)
+    : folder_(folder),
+      name_(movie_name(format)),
+      draft_(draft_in(folder.folder())),
+      width_(width),
+      height_(height),
+      channels_(transparent ? 4 : 3) {
   int frames[2];  // its input
   if (pipe2(frames, O_CLOEXEC) != 0)
     throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
@@ -56,13 +63,13 @@ MovieEncoder::MovieEncoder(const MovieFormat& format, OwnedFiles& folder, int wi
   try {
     // An ffmpeg without its parent would go on with a movie that nobody waits for. Ctrl-C is for us: we end the movie
     // in order.
-    child_ =
-        start_child({.file = "ffmpeg",
-                     .words = arguments(format, std::filesystem::absolute(draft_.path()), width, height, frame_rate),
-                     .environment = {},
-                     .input = frames[0],
-                     .takes_ctrl_c = false,
-                     .last_signal = SIGKILL});
+    child_ = start_child(
+        {.file = "ffmpeg",
+         .words = arguments(format, std::filesystem::absolute(draft_.path()), width, height, frame_rate, transparent),
+         .environment = {},
+         .input = frames[0],
+         .takes_ctrl_c = false,
+         .last_signal = SIGKILL});
   } catch (const std::system_error& error) {
     reason = error.code().value();
   }
@@ -83,7 +90,7 @@ MovieEncoder::~MovieEncoder() {
 }
 
 void MovieEncoder::add(const render::Image& image) {
-  if (image.width != width_ || image.height != height_ || image.channels != 3)
+  if (image.width != width_ || image.height != height_ || image.channels != channels_)
     throw std::runtime_error(
         fmt::format("a frame of the movie is {} x {}, not {} x {}", image.width, image.height, width_, height_));
   const std::uint8_t* from = image.pixels.data();

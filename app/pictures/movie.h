@@ -16,20 +16,22 @@ namespace app {
 class MovieEncoder {
  public:
   /// Starts ffmpeg on a draft in the folder; finish() renames it. Throws FfmpegMissing when ffmpeg is not installed.
-  MovieEncoder(const MovieFormat&, OwnedFiles& folder, int width, int height, double frame_rate);
+  MovieEncoder(const MovieFormat&, OwnedFiles& folder, int width, int height, double frame_rate,
+               bool transparent = false);
   MovieEncoder(const MovieEncoder&) = delete;
   MovieEncoder& operator=(const MovieEncoder&) = delete;
   /// Without finish(): stops ffmpeg and leaves nothing behind.
   ~MovieEncoder();
 
-  void add(const render::Image& rgb);
+  /// RGB, or RGBA of a transparent movie.
+  void add(const render::Image& image);
   void finish();
 
  private:
   OwnedFiles& folder_;
   std::string name_;
   sim::Draft draft_;
-  int width_, height_;
+  int width_, height_, channels_;
   pid_t child_ = -1;
   int pipe_ = -1;
 };

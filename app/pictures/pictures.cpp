@@ -7,6 +7,7 @@
 #include "render/overlay/layout.h"
 #include "render/overlay/panels.h"
 #include "render/scene/cutaway.h"
+#include "render/scene/hidden.h"
 #include "sim/measures/diagnostics.h"
 
 #include <algorithm>
@@ -16,19 +17,34 @@ namespace app {
 
 namespace {
 
-/// A mesh for each vesicle, with its colour and field, opened where the style opens it.
-std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const sim::State& state) {
-  const bool opened = render::find_style(p.view.style).cut;
+/// A mesh for each vesicle that may be seen, as fine as the picture shows it, with its colour and field, opened where
+/// the style opens it. centre: of all.
+std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const sim::State& state,
+                                    const render::Camera& camera, const glm::dvec3& centre) {
+  const bool full = p.view.detail == "full";
+  const render::StyleRow& style = render::find_style(p.view.style);
+  std::vector<render::Sketch> sketches;
+  for (const sim::VesicleState& vesicle : state.vesicles) sketches.push_back(render::sketch_of(vesicle));
+  std::vector<bool> hidden(sketches.size(), false);
+  if (!style.see_through && !style.cut && sketches.size() > 2) hidden = render::hidden(sketches, camera, p.view);
+  const sim::Vec3 plane = sim::Vec3(centre.x, centre.y, centre.z) + p.view.cut_offset * p.view.cut_normal.normalized();
   std::vector<render::Body> bodies;
   sim::Surroundings surroundings;
   for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
     const sim::VesicleState& vesicle = state.vesicles[v];
+    const render::Sketch& sketch = sketches[v];
+    if (hidden[v] || !render::in_picture(camera, sketch)) continue;
+    const double pixels = render::pixels_at(camera, sketch.centre, p.view.size[1]);
     std::optional<sim::Coefficients> field;
     if (p.painting.field) field = painted_field(studio.plans, p.painting, p.source.settings, state, v, surroundings);
     render::Body& body = bodies.emplace_back();
-    body.mesh = render::make_mesh(studio.mesh, vesicle, field ? &*field : nullptr);
+    body.mesh =
+        render::make_mesh(full ? studio.meshes.finest() : studio.meshes.choose(sketch, vesicle.position.order, pixels),
+                          vesicle, field ? &*field : nullptr);
     body.colour = p.painting.bodies[v];
-    if (opened) body.cut = render::make_cut(vesicle.position, p.view.cut_normal, p.view.cut_offset);
+    if (style.cut)
+      body.cut = p.view.cut == "common" ? render::make_cut_at(vesicle.position, p.view.cut_normal, plane)
+                                        : render::make_cut(vesicle.position, p.view.cut_normal, p.view.cut_offset);
   }
   return bodies;
 }
@@ -39,7 +55,8 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   render::Frame frame;
   frame.view = p.view;
   frame.camera = render::make_camera(p.framing, moment);
-  frame.bodies = bodies_of(studio, p, state);
+  frame.bodies = bodies_of(studio, p, state, frame.camera, summary.centroid);
+  frame.vesicles = state.vesicles.size();
   frame.legend = p.painting.legend;
   frame.arrows = arrows_of(p, summary);
   if (p.view.flow_profile) frame.profile = profile_of(p, frame.camera, state.time);
@@ -49,10 +66,10 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   return frame;
 }
 
-/// The panels of one picture on white, all of one size.
+/// The panels of one picture on white or on nothing, all of one size.
 render::Image joined(const Production& production, const std::vector<render::Image>& parts) {
-  render::Image whole(production.width, production.height, 3);
-  std::fill(whole.pixels.begin(), whole.pixels.end(), std::uint8_t{255});
+  render::Image whole(production.width, production.height, parts.front().channels);
+  if (whole.channels == 3) std::fill(whole.pixels.begin(), whole.pixels.end(), std::uint8_t{255});
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const auto column = static_cast<int>(k) % production.columns, row = static_cast<int>(k) / production.columns;
     render::paste(whole, parts[k], column * parts[k].width, row * parts[k].height);
@@ -94,9 +111,7 @@ ViewPanel panel_of(const Still& still, const PictureSource& source, const Painti
 
 Studio::Studio(const render::GlChoice& choice, const std::filesystem::path& shader_dir, int picture_height)
     : renderer(choice, shader_dir),
-      // finer where the outline would show its corners
-      mesh(picture_height > 1440 ? std::make_shared<const render::MeshPlan>(128, 256)
-                                 : std::make_shared<const render::MeshPlan>()) {}
+      meshes(picture_height > 1440 ? 128 : 96) {}  // finer where the outline would show its corners
 
 render::Image draw_picture(Studio& studio, const Production& production, double time) {
   std::vector<render::Image> parts;

@@ -6,20 +6,21 @@
 #include "app/pictures/production.h"
 
 #include "render/draw/draw.h"
+#include "render/scene/detail.h"
 #include "sim/layers/plans.h"
 
 namespace app {
 
-/// Renderer, mesh and plans, shared by all pictures.
+/// Renderer, meshes and plans, shared by all pictures.
 struct Studio {
   render::Renderer renderer;
-  std::shared_ptr<const render::MeshPlan> mesh;
+  render::MeshLevels meshes;
   sim::Plans plans;
   render::Font font = render::Font();
   Studio(const render::GlChoice&, const std::filesystem::path& shader_dir, int picture_height);
 };
 
-/// RGB, production.width x production.height.
+/// RGB, or RGBA without a ground; production.width x production.height.
 render::Image draw_picture(Studio&, const Production&, double time);
 
 /// One instant as a panel of a figure: orthographic, without captions, `half_height` above and below `target`.

@@ -6,6 +6,7 @@
 #include "app/scene/scene_overrides.h"
 #include "app/scene/scene_values.h"
 
+#include "render/core/ground.h"
 #include "render/core/palette.h"
 #include "sim/core/derived.h"
 #include "sim/core/digits.h"
@@ -146,6 +147,11 @@ struct Reader {
       for (const std::string& colour : p.colours) render::parse_colour(colour);
     } catch (const std::invalid_argument& error) {
       fail_at(source_of(table, "colours"), error.what());
+    }
+    try {
+      render::ground_of(p.background);
+    } catch (const std::invalid_argument& error) {
+      fail_at(source_of(table, "background"), error.what());
     }
   }
   void check(const toml::table& table, render::FigureParameters& p) const {

@@ -26,7 +26,8 @@ const std::vector<MovieFormat>& movie_formats() {
        false,
        any,
        "matroska",
-       {"-c:v", "ffv1", "-level", "3", "-g", "1", "-slices", "4", "-pix_fmt", "bgr0"}},
+       {"-c:v", "ffv1", "-level", "3", "-g", "1", "-slices", "4", "-pix_fmt", "bgr0"},
+       {"-c:v", "ffv1", "-level", "3", "-g", "1", "-slices", "4", "-pix_fmt", "bgra"}},
       {"gif",
        "at most 960 px wide and 25 frames a second, 256 colours a frame, for pages and chats",
        false,
@@ -42,7 +43,30 @@ const std::vector<MovieFormat>& movie_formats() {
        60,
        "webp",
        {"-vf", "scale='min(1280,iw)':-1:flags=lanczos", "-c:v", "libwebp_anim", "-quality", "88", "-compression_level",
-        "4", "-loop", "0"}},
+        "4", "-loop", "0"},
+       {"-vf", "scale='min(1280,iw)':-1:flags=lanczos", "-c:v", "libwebp_anim", "-pix_fmt", "yuva420p", "-quality",
+        "88", "-compression_level", "4", "-loop", "0"}},
+      {"webm",
+       "VP9, for browsers; keeps transparency",
+       false,
+       any,
+       "webm",
+       {"-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0", "-pix_fmt", "yuv420p"},
+       {"-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0", "-pix_fmt", "yuva420p", "-auto-alt-ref", "0"}},
+      {"mov",
+       "ProRes 4444, large and nearly lossless, for programs that cut films; keeps transparency",
+       false,
+       any,
+       "mov",
+       {"-c:v", "prores_ks", "-profile:v", "4444", "-vendor", "apl0", "-pix_fmt", "yuv444p10le"},
+       {"-c:v", "prores_ks", "-profile:v", "4444", "-vendor", "apl0", "-alpha_bits", "16", "-pix_fmt", "yuva444p10le"}},
+      {"apng",
+       "animated PNG, lossless; keeps transparency",
+       false,
+       any,
+       "apng",
+       {"-c:v", "apng", "-pred", "mixed", "-plays", "0", "-pix_fmt", "rgb24"},
+       {"-c:v", "apng", "-pred", "mixed", "-plays", "0", "-pix_fmt", "rgba"}},
   };
   return rows;
 }
@@ -55,7 +79,14 @@ const MovieFormat& find_movie_format(std::string_view name) {
                               sim::suggestion(name, sim::row_names(movie_formats())));
 }
 
-void check_movie(const MovieFormat& format, int width, int height) {
+void check_movie(const MovieFormat& format, int width, int height, bool transparent) {
+  if (transparent && format.transparent_encoder.empty()) {
+    std::string able;
+    for (const MovieFormat& row : movie_formats())
+      if (!row.transparent_encoder.empty()) able += (able.empty() ? "" : ", ") + std::string(row.name);
+    throw std::invalid_argument(
+        fmt::format("{} has no transparency: give --format one of {}, or another view.background", format.name, able));
+  }
   if (!format.even_size || (width % 2 == 0 && height % 2 == 0)) return;
   throw std::invalid_argument(
       fmt::format("{} (H.264) needs an even width and height, not {} x {}: give --size {}x{}, or "

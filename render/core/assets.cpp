@@ -26,10 +26,11 @@ std::string shader_text(std::string_view name, const std::filesystem::path& fold
   return text.str();
 }
 
-std::vector<std::string> shader_libraries(std::string_view program) {
-  if (program == "body") return {"light.glsl", "lines.glsl"};
-  if (program == "arrow") return {"light.glsl", "ground.glsl"};
-  if (program == "ground") return {"ground.glsl"};
+std::vector<std::string> shader_libraries(std::string_view shader) {
+  if (shader == "body.vert" || shader == "outline.vert") return {"distance.glsl"};
+  if (shader == "body.frag") return {"light.glsl", "ground.glsl", "lines.glsl"};
+  if (shader == "arrow.frag") return {"light.glsl", "ground.glsl"};
+  if (shader == "ground.frag" || shader == "outline.frag") return {"ground.glsl"};
   return {};
 }
 

@@ -21,7 +21,8 @@ std::span<const unsigned char> asset(std::string_view name);
 /// Text of a shader file: from `folder` if given (so that shaders can be edited without a build), otherwise embedded.
 /// Throws std::runtime_error with the path when the file cannot be read.
 std::string shader_text(std::string_view name, const std::filesystem::path& folder);
-/// Files that stand before NAME.frag of a program, in order. They are GLSL 3.30 and ES 3.00 alike, as all shaders are.
-std::vector<std::string> shader_libraries(std::string_view program);
+/// Files that stand before a shader NAME.vert or NAME.frag, in order. They are GLSL 3.30 and ES 3.00 alike, as all
+/// shaders are.
+std::vector<std::string> shader_libraries(std::string_view shader);
 
 }  // namespace render

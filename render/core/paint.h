@@ -1,7 +1,7 @@
 // Colours of a membrane's paint, and the sizes of what is painted on it; the shaders do the rest.
 #pragma once
 
-#include "render/core/palette.h"
+#include "render/core/ground.h"
 
 #include <glm/glm.hpp>
 
@@ -21,13 +21,14 @@ inline glm::vec3 linear(const Colour& c) {
   return {decode(c.r), decode(c.g), decode(c.b)};
 }
 
-/// Linear colour of the lines where several membranes are one draw: each adds a share of its own.
+/// Linear colour of lines, to which the shader adds a share of the membrane's own.
 inline constexpr glm::vec3 line_ink{0.010F, 0.012F, 0.018F};
-/// ... on a membrane of this linear colour.
-inline glm::vec3 line_colour(const glm::vec3& membrane) { return 0.07F * membrane + line_ink; }
 
-/// sRGB; likewise.
-inline constexpr glm::vec3 outline_ink{0.10F, 0.11F, 0.14F};
-inline Colour outline_colour(const Colour& c) { return {0.10 + 0.08 * c.r, 0.11 + 0.08 * c.g, 0.14 + 0.08 * c.b}; }
+/// Of the outline of a membrane, sRGB: dark, on dark ground light, with a share of the membrane's own colour.
+inline Colour outline_colour(const Colour& c, const Ground& ground, bool see_through) {
+  if (ground.dark()) return {0.50 + 0.40 * c.r, 0.50 + 0.40 * c.g, 0.51 + 0.40 * c.b};
+  const glm::dvec3 own = see_through ? glm::dvec3(linear(c)) : glm::dvec3(c.r, c.g, c.b);
+  return {0.10 + 0.08 * own.r, 0.11 + 0.08 * own.g, 0.14 + 0.08 * own.b};
+}
 
 }  // namespace render

@@ -11,8 +11,9 @@ using sim::Parameter;
 inline constexpr std::array<std::string_view, 4> follow_names{"auto", "always", "never", "vesicle"};
 inline constexpr std::array<std::string_view, 2> projection_names{"perspective", "orthographic"};
 inline constexpr std::array<std::string_view, 2> line_names{"material", "grid"};
-inline constexpr std::array<std::string_view, 2> background_names{"gradient", "white"};
 inline constexpr std::array<std::string_view, 2> plot_places{"below", "beside"};
+inline constexpr std::array<std::string_view, 2> detail_names{"auto", "full"};
+inline constexpr std::array<std::string_view, 2> cut_names{"each", "common"};
 inline constexpr std::array<std::string_view, 3> streamline_names{"off", "laboratory", "vesicles"};
 inline constexpr std::array<std::string_view, 5> colour_by_names{"order", "viscosity_contrast", "bending_modulus",
                                                                  "density_difference", "reduced_volume"};
@@ -35,6 +36,7 @@ struct ViewParameters {
   double opacity = 0.30;            ///< of a ghost's membrane seen straight on
   sim::Vec3 cut_normal = -sim::Vec3::UnitY();
   double cut_offset = 0;
+  std::string cut = "each";
   std::vector<std::string> colours;
   std::string colour_by = "order";
   std::vector<int> size{1920, 1080};  ///< width, height
@@ -60,6 +62,8 @@ struct ViewParameters {
   std::string background = "gradient";
   std::vector<std::string> plots;  ///< quantities against time beside the picture
   std::string plots_at = "below";
+  std::optional<double> depth_cue;
+  std::string detail = "auto";
 };
 
 template <class P, class V>
@@ -138,8 +142,13 @@ void visit(P& p, V&& v) {
     p.cut_normal);
   v(Parameter{.name = "cut_offset",
               .unit = "length",
-              .meaning = "of that plane from the centre of each vesicle, along cut_normal"},
+              .meaning = "of that plane along cut_normal, from the centre that cut says"},
     p.cut_offset);
+  v(Parameter{.name = "cut",
+              .unit = "",
+              .meaning = "where the plane lies: through the centre of each vesicle, or one through that of all",
+              .choices = cut_names},
+    p.cut);
   v(Parameter{.name = "colours",
               .unit = "",
               .meaning = "of the vesicles in turn: names of list colours, or #rrggbb; empty: all of that list"},
@@ -219,7 +228,9 @@ void visit(P& p, V&& v) {
               .meaning =
                   "fields on a diverging map: fine dots on the side below zero, which tell the sign in grey print"},
     p.sign_dots);
-  v(Parameter{.name = "background", .unit = "", .meaning = "the ground behind everything", .choices = background_names},
+  v(Parameter{.name = "background",
+              .unit = "",
+              .meaning = "the ground behind everything: gradient, white, dark, #rrggbb or transparent"},
     p.background);
   v(Parameter{.name = "plots",
               .unit = "",
@@ -227,6 +238,18 @@ void visit(P& p, V&& v) {
               .catalogue = "quantities"},
     p.plots);
   v(Parameter{.name = "plots_at", .unit = "", .meaning = "where these plots are", .choices = plot_places}, p.plots_at);
+  v(Parameter{.name = "depth_cue",
+              .unit = "",
+              .meaning = "share by which the farthest of what the movie shows fades into the ground",
+              .minimum = 0,
+              .maximum = 1,
+              .when_absent = "0.65 from 20 vesicles on, 0 for fewer"},
+    p.depth_cue);
+  v(Parameter{.name = "detail",
+              .unit = "",
+              .meaning = "auto: small vesicles have fewer lines, no dots and a finer contour; full: all have all",
+              .choices = detail_names},
+    p.detail);
 }
 
 /// [[key_frame]]: where the camera is at one time; between key frames it moves smoothly.

@@ -38,7 +38,8 @@ Colour sign_dot_colour(const Colour& c) {
 
 double sign_dot_spacing(int height) { return std::max(SignDots::spacing * height / 1080, SignDots::least); }
 
-std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers, bool sign_dots) {
+std::string body_defines(const StyleRow& style, const ViewParameters& view, bool grid, bool sparse, bool tracers,
+                         bool sign_dots) {
   std::string text;
   std::istringstream words{std::string(style.defines)};
   for (std::string word; words >> word;) text += "#define " + word + "\n";
@@ -48,8 +49,9 @@ std::string body_defines(const StyleRow& style, const ViewParameters& view, std:
     parallels = std::max(3, parallels / 2);
     meridians = std::max(4, meridians / 4 * 2);
   }
-  const bool lines = style.grid && view.line_width > 0;
+  const bool lines = style.grid && view.line_width > 0 && grid;
   if (lines) text += "#define GRID\n";
+  if (lines && sparse) text += "#define SPARSE\n";
   if ((lines || checker) && parallels > 0) text += fmt::format("#define PARALLELS {}\n", parallels);
   if ((lines || checker) && meridians > 0) {
     const int middle = meridians % 2 == 0 ? 2 : 1;
@@ -63,7 +65,7 @@ std::string body_defines(const StyleRow& style, const ViewParameters& view, std:
     text += fmt::format("#define SIGN_DOTS\n#define DOT_RADIUS {}\n#define DOT_FULL {}\n", SignDots::radius,
                         SignDots::full);
   if (view.outline_width > 0) text += "#define CONTOUR\n";
-  if (style.tracers && view.tracers && tracers > 0) text += fmt::format("#define TRACERS {}\n", tracers);
+  if (style.tracers && view.tracers && tracers) text += "#define TRACERS\n";
   return text;
 }
 

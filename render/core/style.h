@@ -35,8 +35,8 @@ double sign_dot_spacing(int height);
 /// On this colour of the map, sRGB; body.frag does the same.
 Colour sign_dot_colour(const Colour& under);
 
-/// The #define lines of body.frag for this view; `tracers` dots, `sign_dots` on a field.
-std::string body_defines(const StyleRow& style, const ViewParameters& view, std::size_t tracers,
+/// The #define lines of body.frag for this view; `sparse`: lines that fade to a few, `sign_dots` on a field.
+std::string body_defines(const StyleRow& style, const ViewParameters& view, bool grid, bool sparse, bool tracers,
                          bool sign_dots = false);
 
 }  // namespace render

@@ -17,4 +17,9 @@ std::vector<std::uint32_t> back_to_front(const std::vector<Body>& bodies, const 
 /// back. Pushed outward by less than the reach, they leave no gap at the contour.
 std::vector<std::uint32_t> rim_triangles(const Mesh& mesh, const Camera& camera, double reach);
 
+/// For each vertex the distance, along the membrane as the picture shows it, from where the body turns from front to
+/// back: the contour. In units of which a half height of the picture has `unit`; true where it is below `reach`,
+/// beyond that at least `reach`.
+std::vector<float> contour_distances(const Mesh& mesh, const Camera& camera, double unit, double reach);
+
 }  // namespace render

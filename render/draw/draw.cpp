@@ -17,32 +17,49 @@ namespace {
 
 constexpr double weakest_arrow = 0.10;  // of the longest; shorter ones are left out
 
-// The membranes as the picture shows them: points in half heights of the picture, dense enough for distances to them.
-std::vector<glm::dvec2> shadows(const Frame& frame) {
-  constexpr int stride = 2;  // of the mesh: 48 x 96 points
-  std::vector<glm::dvec2> places;
+// A membrane as the picture shows it: points in half heights of the picture, dense enough for distances to them, and a
+// circle round them.
+struct Shadow {
+  std::vector<glm::dvec2> points;
+  glm::dvec2 centre{0};
+  double radius = 0;
+};
+
+std::vector<Shadow> shadows(const Frame& frame) {
+  std::vector<Shadow> all;
   for (const Body& body : frame.bodies) {
+    Shadow& shadow = all.emplace_back();
+    const int stride = body.mesh.plan->latitudes() > 64 ? 2 : 1;  // of the mesh: 48 x 96 points of a large body
     const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
     for (int j = 0; j < columns; j += stride)
       for (int i = 0; i < rings; i += stride) {
         const int point = j * rings + i;
         const glm::dvec2 place = frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(point)]);
-        places.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
+        shadow.points.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
+        shadow.centre += shadow.points.back();
       }
+    shadow.centre /= static_cast<double>(shadow.points.size());
+    for (const glm::dvec2& p : shadow.points) shadow.radius = std::max(shadow.radius, glm::distance(p, shadow.centre));
   }
-  return places;
+  return all;
 }
 
 // 0 when the segment touches a membrane's shadow, 1 when it is well away: half an arrow beside a contour looks like
 // something that belongs to the vesicle.
-double clear_of_bodies(const std::vector<glm::dvec2>& shadows, const glm::dvec2& tail, const glm::dvec2& tip) {
+double clear_of_bodies(const std::vector<Shadow>& shadows, const glm::dvec2& tail, const glm::dvec2& tip) {
   constexpr double near = 0.03, far = 0.055;  // half heights
   const glm::dvec2 along = tip - tail;
   const double length2 = std::max(glm::dot(along, along), 1e-12);
+  const auto away_from = [&](const glm::dvec2& p) {
+    return p - tail - along * std::clamp(glm::dot(p - tail, along) / length2, 0.0, 1.0);
+  };
   double nearest2 = far * far;
-  for (const glm::dvec2& p : shadows) {
-    const glm::dvec2 away = p - tail - along * std::clamp(glm::dot(p - tail, along) / length2, 0.0, 1.0);
-    nearest2 = std::min(nearest2, glm::dot(away, away));
+  for (const Shadow& shadow : shadows) {
+    if (glm::length(away_from(shadow.centre)) > shadow.radius + far) continue;
+    for (const glm::dvec2& p : shadow.points) {
+      const glm::dvec2 away = away_from(p);
+      nearest2 = std::min(nearest2, glm::dot(away, away));
+    }
   }
   return glm::smoothstep(near, far, std::sqrt(nearest2));
 }
@@ -53,12 +70,6 @@ void check(const ViewParameters& view) {
   if (view.supersampling < 1) throw std::invalid_argument("view.supersampling must be at least 1");
 }
 
-void set_ground(const Program& program, const Frame& frame) {
-  const bool is_white = frame.view.background == "white";
-  program.set("u_top", vector_of(is_white ? white : ground_top));
-  program.set("u_bottom", vector_of(is_white ? white : ground_bottom));
-}
-
 }  // namespace
 
 Renderer::Renderer(const GlChoice& choice, std::filesystem::path shader_dir)
@@ -67,7 +78,6 @@ Renderer::Renderer(const GlChoice& choice, std::filesystem::path shader_dir)
       nothing_(context_.gl()),
       bodies_(context_.gl()),
       hulls_(context_.gl()),
-      ghosts_(context_.gl()),
       ribbons_(context_.gl()),
       arrows_(context_.gl()),
       beads_(context_.gl()),
@@ -96,13 +106,12 @@ PngText Renderer::metadata() const {
 const Program& Renderer::program(const std::string& name, const std::string& defines) {
   const std::string key = name + "\n" + defines;
   if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
-  const std::string head = "#version 330 core\n" + defines;
-  std::string library;
-  for (const std::string& file : shader_libraries(name)) library += shader_text(file, shader_dir_);
-  return programs_
-      .try_emplace(key, context_.gl(), name, head + shader_text(name + ".vert", shader_dir_),
-                   head + library + shader_text(name + ".frag", shader_dir_))
-      .first->second;
+  const auto text = [&](const std::string& file) {
+    std::string whole = "#version 330 core\n" + defines;
+    for (const std::string& library : shader_libraries(file)) whole += shader_text(library, shader_dir_);
+    return whole + shader_text(file, shader_dir_);
+  };
+  return programs_.try_emplace(key, context_.gl(), name, text(name + ".vert"), text(name + ".frag")).first->second;
 }
 
 void Renderer::begin(const Frame& frame) {
@@ -118,7 +127,7 @@ void Renderer::begin(const Frame& frame) {
     framebuffer_.emplace(gl, width, height);
   }
   framebuffer_->bind();
-  gl.ClearColor(1, 1, 1, 1);
+  gl.ClearColor(0, 0, 0, 0);
   gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl.Enable(GL_DEPTH_TEST);
   gl.DepthFunc(GL_LESS);
@@ -127,7 +136,14 @@ void Renderer::begin(const Frame& frame) {
   gl.CullFace(GL_BACK);
 }
 
+// Premultiplied over a transparent ground: the alphas add up as coverages do.
+void Renderer::start_blending() {
+  context_.gl().Enable(GL_BLEND);
+  context_.gl().BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+}
+
 void Renderer::draw_ground(const Frame& frame) {
+  if (ground_of(frame.view.background).transparent) return;
   const Gl& gl = context_.gl();
   const Program& p = program("ground", "");
   p.use();
@@ -148,7 +164,7 @@ void Renderer::draw_arrows(const Frame& frame) {
   if (rests && !frame.camera.follows) return;
 
   const Camera& camera = frame.camera;
-  const std::vector<glm::dvec2> bodies = shadows(frame);
+  const std::vector<Shadow> bodies = shadows(frame);
   const auto place_of = [&](const glm::dvec3& point) {
     return camera.picture_place(point) * glm::dvec2(camera.half_width / camera.half_height, 1);
   };
@@ -176,7 +192,7 @@ void Renderer::draw_arrows(const Frame& frame) {
   p.use();
   set_camera(p, camera);
   set_ground(p, frame);
-  p.set("u_colour", linear(arrow_colour));
+  p.set("u_colour", linear(inks_on(ground_of(frame.view.background)).arrow));
   p.set("u_height", static_cast<float>(framebuffer_->height()));
   p.set("u_thickness", static_cast<float>(arrow_thickness));
   VertexArray& shape = rests ? beads_ : arrows_;
@@ -193,7 +209,9 @@ Image Renderer::finish(const Frame& frame) {
   framebuffer_->read(samples_);
   if (const GLenum error = context_.gl().GetError(); error != GL_NO_ERROR)
     throw std::runtime_error("OpenGL reports error " + std::to_string(error) + " (" + information().renderer + ")");
-  return downsample(samples_, frame.view.supersampling, RowOrder::bottom_first);
+  return ground_of(frame.view.background).transparent
+             ? downsample_transparent(samples_, frame.view.supersampling, RowOrder::bottom_first)
+             : downsample(samples_, frame.view.supersampling, RowOrder::bottom_first);
 }
 
 Image draw_frame(Renderer& renderer, const Frame& frame) {

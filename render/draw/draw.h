@@ -1,6 +1,7 @@
 // Draws a frame in passes: ground, arrows or streamlines, bodies with outlines, captions.
 #pragma once
 
+#include "render/draw/batch.h"
 #include "render/gl/context.h"
 #include "render/gl/gpu.h"
 #include "render/overlay/overlay.h"
@@ -37,27 +38,29 @@ class Renderer {
   void draw_flow_lines(const Frame&);
   /// A strip along the points in the picture, `reach` samples to both sides, moved towards the eye by `nearer`.
   void draw_ribbon(const Camera&, std::span<const glm::dvec3> points, bool closed, float reach, double nearer);
-  void upload(const Body&, const Camera&);
-  void draw_body(const Frame&, const Body&);
-  /// The core hides what is behind it; the edge, two translucent hulls, fades out in thirds of a sample.
-  enum class OutlinePart { core, edge };
-  std::vector<std::uint32_t> rim_of(const Frame&, const Body&) const;
-  void draw_outline(const Frame&, const Body&, const std::vector<std::uint32_t>& rim, OutlinePart);
+  void start_blending();
+  /// A program for membranes, in use, with the camera and what fades them set.
+  const Program& use_for_bodies(const std::string& name, const Frame&, const std::string& defines);
+  void upload(const Batch&);
+  void draw_batch(const Frame&, const Batch&, const Variant&);
+  void draw_solids(const Frame&);
+  /// A core that hides what is behind it, and two translucent hulls that fade out in thirds of a sample.
+  void draw_outlines(const Frame&);
   Image finish(const Frame&);
 
   GlContext context_;
   std::filesystem::path shader_dir_;
   std::map<std::string, Program> programs_;  ///< by name and defines
-  VertexArray nothing_, bodies_, hulls_, ghosts_, ribbons_, arrows_, beads_;
+  VertexArray nothing_, bodies_, hulls_, ribbons_, arrows_, beads_;
   Palette palette_;
-  std::shared_ptr<const MeshPlan> uploaded_plan_;
   std::optional<Framebuffer> framebuffer_;
   Image samples_;
   Font font_;
 };
 
-/// RGB picture of frame.view.size. The same frame gives the same bytes with every software driver of one Mesa version.
-/// Throws std::runtime_error when the driver fails, std::invalid_argument for an unknown style or a bad size.
+/// RGB picture of frame.view.size, or RGBA where the ground is transparent. The same frame gives the same bytes with
+/// every software driver of one Mesa version. Throws std::runtime_error when the driver fails, std::invalid_argument
+/// for an unknown style or a bad size.
 Image draw_frame(Renderer& renderer, const Frame& frame);
 
 }  // namespace render

@@ -2,174 +2,164 @@
 #include "render/draw/draw.h"
 
 #include "render/core/style.h"
+#include "render/draw/batch.h"
 #include "render/draw/depth_order.h"
 #include "render/draw/draw_values.h"
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
+#include <map>
+#include <utility>
 
 namespace render {
 namespace {
 
-// Single precision holds these whatever the unit of the scene.
-std::vector<glm::vec3> places(const Mesh& mesh, const Camera& camera) {
-  std::vector<glm::vec3> all;
-  all.reserve(mesh.position.size());
-  for (const glm::dvec3& p : mesh.position) all.emplace_back(camera.place(p));
-  return all;
-}
-
-glm::vec3 eye_place(const Camera& camera, const glm::dvec3& point) {
-  return camera.view * glm::vec4(glm::vec3(camera.place(point)), 1);
+// Nearest first: what is hidden is not shaded.
+std::vector<std::size_t> front_to_back(const Frame& frame) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < frame.bodies.size(); ++k) {
+    const Mesh& mesh = frame.bodies[k].mesh;
+    const glm::dvec3 middle = (mesh.position[mesh.position.size() - 2] + mesh.position.back()) / 2.0;
+    order.emplace_back(-(glm::dmat4(frame.camera.view) * glm::dvec4(frame.camera.place(middle), 1)).z, k);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> bodies;
+  for (const auto& [depth, k] : order) bodies.push_back(k);
+  return bodies;
 }
 
 }  // namespace
 
-void Renderer::upload(const Body& body, const Camera& camera) {
-  bodies_.attribute(0, places(body.mesh, camera));
-  bodies_.attribute(1, body.mesh.normal);
-  if (uploaded_plan_ == body.mesh.plan) return;
-  bodies_.indices(body.mesh.plan->indices());
-  uploaded_plan_ = body.mesh.plan;
-}
-
-void Renderer::draw_body(const Frame& frame, const Body& body) {
-  const Gl& gl = context_.gl();
-  const StyleRow& style = find_style(frame.view.style);
-  const std::vector<Mesh::Tracer>& tracers = body.mesh.tracers;
-  const bool dotted = style.field && frame.legend && frame.legend->mirrored && frame.view.sign_dots;
-  const Program& p = program("body", body_defines(style, frame.view, tracers.size(), dotted));
+const Program& Renderer::use_for_bodies(const std::string& name, const Frame& frame, const std::string& defines) {
+  const double cue = depth_cue_of(frame.view, frame.vesicles > 0 ? frame.vesicles : frame.bodies.size());
+  const Program& p = program(name, defines + (cue > 0 ? "#define DEPTH_CUE\n" : ""));
   p.use();
   set_camera(p, frame.camera);
+  if (cue > 0) {
+    const double away = glm::distance(frame.camera.eye, frame.camera.target), depth = frame.camera.depth;
+    p.set("u_cue", glm::vec3(cue, (depth - away) / frame.camera.half_height, 2 * depth / frame.camera.half_height));
+    p.set("u_height", static_cast<float>(framebuffer_->height()));
+    set_ground(p, frame);
+  }
+  return p;
+}
+
+void Renderer::upload(const Batch& batch) {
+  bodies_.attribute(0, batch.position);
+  bodies_.attribute(1, batch.normal);
+  bodies_.attribute(2, batch.label);
+  bodies_.attribute(5, batch.paint);
+  bodies_.indices(batch.indices);
+  if (!batch.dot.empty()) bodies_.attribute(3, batch.dot);
+  if (!batch.dot.empty()) bodies_.attribute(4, batch.next_dot);
+  if (!batch.detail.empty()) bodies_.attribute(6, batch.detail);
+  if (!batch.scalar.empty()) bodies_.attribute(7, batch.scalar);
+  if (!batch.cut.empty()) bodies_.attribute(8, batch.cut);
+  if (!batch.from_contour.empty()) bodies_.attribute(9, batch.from_contour);
+  if (!batch.contour.empty()) bodies_.attribute(10, batch.contour);
+}
+
+void Renderer::draw_batch(const Frame& frame, const Batch& batch, const Variant& variant) {
+  const StyleRow& style = find_style(frame.view.style);
+  const Program& p = use_for_bodies(
+      "body", frame, body_defines(style, frame.view, variant.grid, variant.sparse, variant.tracers, variant.sign_dots));
   if (style.field) {
-    if (!frame.legend || body.mesh.scalar.size() != body.mesh.position.size())
-      throw std::invalid_argument("the style 'field' needs a legend, and a scalar on every mesh");
-    const double low = frame.legend->low, width = frame.legend->high - low;
-    std::vector<float> shares;
-    for (const double value : body.mesh.scalar) shares.push_back(static_cast<float>((value - low) / width));
-    bodies_.attribute(6, shares);
     palette_.bind();
     p.set("u_map", 0);
-    if (dotted)
+    if (variant.sign_dots)
       p.set("u_dot_spacing", static_cast<float>(2 * sign_dot_spacing(frame.view.size[1]) / frame.view.size[1]));
   }
-  if (style.cut) {
-    glm::vec4 plane(0, 0, 0, -1);  // of nothing
-    if (body.cut) plane = glm::vec4(body.cut->normal, -glm::dot(body.cut->normal, frame.camera.place(body.cut->point)));
-    p.set("u_cut", std::array{plane});
-    p.set("u_contour_width", samples(frame.view, frame.view.outline_width, 1.0));
-  }
-  const glm::vec3 colour = linear(style.own_colour ? body.colour : white);
-  p.set("u_colour", colour);
-  p.set("u_line_colour", line_colour(colour));
-  p.set("u_contour", vector_of(outline_colour(body.colour)));
+  p.set("u_line_colour", line_ink);
+  p.set("u_contour_width", samples(frame.view, frame.view.outline_width, 1.0));
   p.set("u_half_width", samples(frame.view, frame.view.line_width / 2, 0.42));
-  if (style.tracers && frame.view.tracers && !tracers.empty()) {
-    std::vector<glm::vec4> dots;
-    for (const Mesh::Tracer& t : tracers)
-      dots.emplace_back(eye_place(frame.camera, t.position), t.bright ? 1.0F : 0.0F);
-    p.set("u_tracer", dots);
+  p.set("u_opacity", static_cast<float>(frame.view.opacity));
+  if (variant.tracers) {
     p.set("u_tracer_bright", linear(tracer_bright));
     p.set("u_tracer_dark", linear(tracer_dark));
-    bodies_.attribute(3, nearest_tracers(body.mesh));
-    p.set("u_tracer_radius", static_cast<float>(tracer_radius * body.mesh.area_radius / frame.camera.half_height));
   }
-  upload(body, frame.camera);
-  bodies_.attribute(2, frame.view.lines == "grid" ? body.mesh.plan->parameters() : body.mesh.label);
-  gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(body.mesh.plan->indices().size()), GL_UNSIGNED_INT, nullptr);
+  upload(batch);
+  context_.gl().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indices.size()), GL_UNSIGNED_INT, nullptr);
 }
 
-std::vector<std::uint32_t> Renderer::rim_of(const Frame& frame, const Body& body) const {
-  const double widest = samples(frame.view, frame.view.outline_width, 1.0) + edge_step, slack = 1.5;  // samples
-  return rim_triangles(body.mesh, frame.camera, 2 * (widest + slack) / framebuffer_->height());
-}
-
-void Renderer::draw_outline(const Frame& frame, const Body& body, const std::vector<std::uint32_t>& rim,
-                            OutlinePart part) {
-  const Gl& gl = context_.gl();
-  const Program& p = program("outline", "");
-  p.use();
-  set_camera(p, frame.camera);
-  p.set("u_colour", vector_of(outline_colour(body.colour)));
-  hulls_.attribute(0, places(body.mesh, frame.camera));
-  hulls_.attribute(1, body.mesh.normal);
-  hulls_.indices(rim);
-  gl.CullFace(GL_FRONT);
-  const auto hull = [&](double more, double share) {
-    const float width = samples(frame.view, frame.view.outline_width, 1.0) + static_cast<float>(more);
-    p.set("u_push", glm::vec2(2 * width / static_cast<float>(framebuffer_->width()),
-                              2 * width / static_cast<float>(framebuffer_->height())));
-    p.set("u_alpha", static_cast<float>(share));
-    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(rim.size()), GL_UNSIGNED_INT, nullptr);
-  };
-  if (part == OutlinePart::core) hull(-edge_step, 1);
-  if (part == OutlinePart::edge) {
-    hull(0, 1.0 / 2);
-    hull(edge_step, 1.0 / 3);
+// One draw for all bodies that are painted in one way.
+void Renderer::draw_solids(const Frame& frame) {
+  std::map<Variant, std::vector<std::size_t>> ways;
+  for (const std::size_t k : front_to_back(frame))
+    ways[variant_of(frame, frame.bodies[k], detail_in(frame, frame.bodies[k]))].push_back(k);
+  for (const auto& [variant, bodies] : ways) {
+    Batch batch;
+    for (const std::size_t k : bodies)
+      append(batch, frame, frame.bodies[k], detail_in(frame, frame.bodies[k]), variant, framebuffer_->height(), true);
+    draw_batch(frame, batch, variant);
   }
-  gl.CullFace(GL_BACK);
 }
 
 // All membranes in one draw, farthest triangle first.
 void Renderer::draw_ghosts(const Frame& frame) {
+  if (frame.bodies.empty()) return;
   const Gl& gl = context_.gl();
-  const StyleRow& style = find_style(frame.view.style);
-  std::vector<glm::vec3> positions, normals, labels, colours;
-  std::vector<glm::vec4> dots, next_dots;
-  std::size_t tracers = 0;
-  double radius = 0;
+  Variant variant{.grid = false, .sparse = false, .tracers = false};
+  std::vector<Detail> details;
   for (const Body& body : frame.bodies) {
-    const auto append = [](auto& all, const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
-    append(positions, places(body.mesh, frame.camera));
-    append(normals, body.mesh.normal);
-    append(labels, frame.view.lines == "grid" ? body.mesh.plan->parameters() : body.mesh.label);
-    colours.resize(positions.size(), linear(style.own_colour ? body.colour : white));
-    tracers = std::max(tracers, body.mesh.tracers.size());
-    radius = std::max(radius, body.mesh.area_radius);
+    details.push_back(detail_in(frame, body));
+    const Variant own = variant_of(frame, body, details.back());
+    variant.grid = variant.grid || own.grid;
+    variant.sparse = variant.sparse || own.sparse;
+    variant.tracers = variant.tracers || own.tracers;
   }
-  const bool dotted = style.tracers && frame.view.tracers && tracers > 0;
-  if (dotted)
-    for (const Body& body : frame.bodies) {
-      const auto place = [&](float k) {
-        if (k < 0) return glm::vec4(0, 0, 0, -1);
-        const Mesh::Tracer& t = body.mesh.tracers[static_cast<std::size_t>(k)];
-        return glm::vec4(eye_place(frame.camera, t.position), t.bright ? 1 : 0);
-      };
-      for (const glm::vec2& nearest : nearest_tracers(body.mesh)) {
-        dots.push_back(place(nearest.x));
-        next_dots.push_back(place(nearest.y));
-      }
-    }
-  const Program& p = program("body", body_defines(style, frame.view, tracers));
-  p.use();
-  set_camera(p, frame.camera);
-  p.set("u_line_colour", line_ink);
-  p.set("u_contour", outline_ink);
-  p.set("u_contour_width", samples(frame.view, frame.view.outline_width, 1.0));
-  p.set("u_half_width", samples(frame.view, frame.view.line_width / 2, 0.42));
-  p.set("u_opacity", static_cast<float>(frame.view.opacity));
-  ghosts_.attribute(0, positions);
-  ghosts_.attribute(1, normals);
-  ghosts_.attribute(2, labels);
-  ghosts_.attribute(5, colours);
-  if (dotted) {
-    ghosts_.attribute(3, dots);
-    ghosts_.attribute(4, next_dots);
-    p.set("u_tracer_bright", linear(tracer_bright));
-    p.set("u_tracer_dark", linear(tracer_dark));
-    p.set("u_tracer_radius", static_cast<float>(tracer_radius * radius / frame.camera.half_height));
-  }
-  const std::vector<std::uint32_t> triangles = back_to_front(frame.bodies, frame.camera);
-  ghosts_.indices(triangles);
-  gl.Enable(GL_BLEND);
-  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  Batch batch;
+  for (std::size_t k = 0; k < frame.bodies.size(); ++k)
+    append(batch, frame, frame.bodies[k], details[k], variant, framebuffer_->height(), false);
+  batch.indices = back_to_front(frame.bodies, frame.camera);
+  start_blending();
   gl.Disable(GL_DEPTH_TEST);
   gl.Disable(GL_CULL_FACE);
-  gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(triangles.size()), GL_UNSIGNED_INT, nullptr);
+  draw_batch(frame, batch, variant);
   gl.Enable(GL_CULL_FACE);
   gl.Enable(GL_DEPTH_TEST);
   gl.Disable(GL_BLEND);
+}
+
+// Two hulls more than the core make thirds of a sample at the outer edge. They let through what lies behind: all of
+// that is there when they are drawn.
+void Renderer::draw_outlines(const Frame& frame) {
+  const Gl& gl = context_.gl();
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> outlines;
+  std::vector<std::uint32_t> rims;
+  for (const Body& body : frame.bodies) {
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    const float width = detail_in(frame, body).outline * samples(frame.view, frame.view.outline_width, 1.0);
+    constexpr double slack = 1.5;  // samples
+    for (const std::uint32_t k : rim_triangles(
+             body.mesh, frame.camera, 2 * (static_cast<double>(width) + edge_step + slack) / framebuffer_->height()))
+      rims.push_back(first + k);
+    for (const glm::dvec3& p : body.mesh.position) positions.emplace_back(frame.camera.place(p));
+    normals.insert(normals.end(), body.mesh.normal.begin(), body.mesh.normal.end());
+    outlines.insert(outlines.end(), body.mesh.position.size(),
+                    glm::vec4(vector_of(outline_colour(frame, body)), width));
+  }
+  const Program& p = use_for_bodies("outline", frame, "");
+  p.set("u_sample",
+        glm::vec2(2.0F / static_cast<float>(framebuffer_->width()), 2.0F / static_cast<float>(framebuffer_->height())));
+  hulls_.attribute(0, positions);
+  hulls_.attribute(1, normals);
+  hulls_.attribute(2, outlines);
+  hulls_.indices(rims);
+  const auto hull = [&](double more, double share) {
+    p.set("u_more", static_cast<float>(more));
+    p.set("u_alpha", static_cast<float>(share));
+    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(rims.size()), GL_UNSIGNED_INT, nullptr);
+  };
+  gl.CullFace(GL_FRONT);
+  hull(-edge_step, 1);
+  start_blending();
+  gl.DepthMask(GL_FALSE);
+  hull(0, 1.0 / 2);
+  hull(edge_step, 1.0 / 3);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
+  gl.CullFace(GL_BACK);
 }
 
 void Renderer::draw_ribbon(const Camera& camera, std::span<const glm::dvec3> points, bool closed, float reach,
@@ -209,9 +199,8 @@ void Renderer::draw_flow_lines(const Frame& frame) {
   p.use();
   p.set("u_core", -2.0F);
   p.set("u_half_width", half_width);
-  p.set("u_rim", vector_of(flow_line_colour));
-  gl.Enable(GL_BLEND);
-  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  p.set("u_rim", vector_of(inks_on(ground_of(frame.view.background)).flow_line));
+  start_blending();
   gl.DepthMask(GL_FALSE);
   gl.Disable(GL_CULL_FACE);
   const glm::dvec3 toward = glm::normalize(frame.camera.eye - frame.camera.target);
@@ -245,14 +234,13 @@ void Renderer::draw_cut_edges(const Frame& frame) {
   p.use();
   p.set("u_core", core);
   p.set("u_half_width", half_width);
-  gl.Enable(GL_BLEND);
-  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  start_blending();
   gl.DepthMask(GL_FALSE);
   gl.Disable(GL_CULL_FACE);
   for (const Body& body : frame.bodies) {
     if (!body.cut) continue;
     p.set("u_colour", vector_of({0.5 + 0.5 * body.colour.r, 0.5 + 0.5 * body.colour.g, 0.5 + 0.5 * body.colour.b}));
-    p.set("u_rim", vector_of(outline_colour(body.colour)));
+    p.set("u_rim", vector_of(outline_colour(frame, body)));
     for (const std::vector<glm::dvec3>& edge : body.cut->edges) {
       draw_ribbon(frame.camera, edge, true, half_width + 1, 0.004 * body.mesh.area_radius);
     }
@@ -266,34 +254,19 @@ void Renderer::draw_bodies(const Frame& frame) {
   const StyleRow& style = find_style(frame.view.style);
   if (style.see_through) return draw_ghosts(frame);
   if (style.field && frame.legend) palette_.fill(frame.legend->colours);
-  if (style.cut) {
-    const Gl& gl = context_.gl();
-    gl.Enable(GL_CLIP_DISTANCE0);
-    gl.Disable(GL_CULL_FACE);
-    for (const Body& body : frame.bodies) draw_body(frame, body);
-    gl.Disable(GL_CLIP_DISTANCE0);
-    gl.Enable(GL_CULL_FACE);
-    draw_cut_edges(frame);
-    return draw_flow_lines(frame);
+  if (!style.cut) {
+    draw_solids(frame);
+    if (frame.view.outline_width > 0) draw_outlines(frame);
+    return;
   }
-  const bool outlined = frame.view.outline_width > 0;
-  std::vector<std::vector<std::uint32_t>> rims;
-  for (const Body& body : frame.bodies) {
-    draw_body(frame, body);
-    if (!outlined) continue;
-    rims.push_back(rim_of(frame, body));
-    draw_outline(frame, body, rims.back(), OutlinePart::core);
-  }
-  if (!outlined) return;
-  // Two hulls more make thirds of a sample at the outer edge. They let through what lies behind: all of that is there
-  // now.
   const Gl& gl = context_.gl();
-  gl.Enable(GL_BLEND);
-  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  gl.DepthMask(GL_FALSE);
-  for (std::size_t k = 0; k < rims.size(); ++k) draw_outline(frame, frame.bodies[k], rims[k], OutlinePart::edge);
-  gl.DepthMask(GL_TRUE);
-  gl.Disable(GL_BLEND);
+  gl.Enable(GL_CLIP_DISTANCE0);
+  gl.Disable(GL_CULL_FACE);
+  draw_solids(frame);
+  gl.Disable(GL_CLIP_DISTANCE0);
+  gl.Enable(GL_CULL_FACE);
+  draw_cut_edges(frame);
+  draw_flow_lines(frame);
 }
 
 }  // namespace render

@@ -13,7 +13,7 @@ namespace render {
   X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)               \
   X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
-  X(PFNGLBLENDFUNCPROC, BlendFunc)                             \
+  X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)             \
   X(PFNGLBUFFERDATAPROC, BufferData)                           \
   X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
   X(PFNGLCLEARPROC, Clear)                                     \

@@ -2,6 +2,7 @@
 
 #include "render/core/srgb.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -95,6 +96,37 @@ Image downsample(const Image& source, int factor, RowOrder rows) {
                            : add_row<3>(source_row(k), result.width, factor, table.linear, sums.data());
     for (std::size_t i = 0; i < sums.size(); ++i) out[i] = table.encoded[(sums[i] * scale + half) >> 32];
   }
+  return result;
+}
+
+Image downsample_transparent(const Image& source, int factor, RowOrder rows) {
+  if (factor < 1 || source.channels != 4 || source.width % factor != 0 || source.height % factor != 0)
+    throw std::invalid_argument("a " + std::to_string(source.width) + "x" + std::to_string(source.height) +
+                                " picture cannot be reduced by " + std::to_string(factor));
+  const Tables& table = tables();
+  Image result(source.width / factor, source.height / factor, 4);
+  const auto samples = static_cast<std::uint64_t>(factor) * static_cast<std::uint64_t>(factor);
+  for (int y = 0; y < result.height; ++y)
+    for (int x = 0; x < result.width; ++x) {
+      std::uint64_t alpha = 0;
+      std::array<std::uint64_t, 3> sum{};
+      for (int k = 0; k < factor; ++k) {
+        const int row = y * factor + k;
+        const std::uint8_t* p = source.at(x * factor, rows == RowOrder::top_first ? row : source.height - 1 - row);
+        for (int i = 0; i < factor; ++i, p += 4) {
+          const std::uint32_t a = p[3];
+          if (a == 0) continue;
+          alpha += a;
+          for (std::size_t c = 0; c < 3; ++c) sum[c] += a * table.linear[std::min((p[c] * 255U + a / 2) / a, 255U)];
+        }
+      }
+      if (alpha == 0) continue;
+      std::uint8_t* out = result.at(x, y);
+      // alpha of at least 1: what has colour is not lost
+      out[3] = static_cast<std::uint8_t>(std::max<std::uint64_t>((alpha + samples / 2) / samples, 1));
+      for (std::size_t c = 0; c < 3; ++c)
+        out[c] = table.encoded[(sum[c] * (linear_steps - 1) + alpha * 65535 / 2) / (alpha * 65535)];
+    }
   return result;
 }
 

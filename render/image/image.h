@@ -40,6 +40,10 @@ enum class RowOrder { top_first, bottom_first };
 /// Mean over factor x factor blocks, taken in linear light. Width and height must be multiples of factor. The result
 /// is RGB and starts with the top row; `rows`: order of the rows of the source (OpenGL: bottom first).
 Image downsample(const Image& source, int factor, RowOrder rows = RowOrder::top_first);
+/// The same for RGBA samples whose colour is premultiplied by alpha as it is encoded, as OpenGL blends them over
+/// nothing. The result is RGBA, not premultiplied: alpha is the mean of those of the samples, the colour their mean
+/// weighted by alpha, so that nothing of the empty ground is in it.
+Image downsample_transparent(const Image& source, int factor, RowOrder rows = RowOrder::top_first);
 
 /// Key and text of the text chunks of a PNG file; keys 1-79 Latin characters, text UTF-8.
 using PngText = std::vector<std::pair<std::string, std::string>>;

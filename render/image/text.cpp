@@ -357,11 +357,11 @@ double draw_text(cairo_t* cairo, const Font& font, double size, double x, double
   return width;
 }
 
-double draw_text_on_picture(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
-                            Align align) {
+double draw_text_on_picture(cairo_t* cairo, const Font& font, const Colour& rim, double size, double x, double y,
+                            std::string_view text, Align align) {
   const double width = set_text(cairo, font, size, x, y, text, align);
   cairo_save(cairo);
-  cairo_set_source_rgba(cairo, 1, 1, 1, 0.5);
+  cairo_set_source_rgba(cairo, rim.r, rim.g, rim.b, 0.5);
   cairo_set_line_width(cairo, 0.28 * size);
   cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
   cairo_stroke_preserve(cairo);

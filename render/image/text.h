@@ -3,6 +3,8 @@
 // be searched and edited.
 #pragma once
 
+#include "render/core/palette.h"
+
 #include <cairo.h>
 
 #include <memory>
@@ -73,9 +75,9 @@ TextBox text_box(cairo_t* cairo, const Font& font, double size, double x, double
 /// superscript. Returns the advance width. size: of the em square, in user units.
 double draw_text(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
                  Align align = Align::left);
-/// The same with a soft white rim, for text that may lie on a vesicle.
-double draw_text_on_picture(cairo_t* cairo, const Font& font, double size, double x, double y, std::string_view text,
-                            Align align = Align::left);
+/// The same with a soft rim, for text that may lie on a vesicle.
+double draw_text_on_picture(cairo_t* cairo, const Font& font, const Colour& rim, double size, double x, double y,
+                            std::string_view text, Align align = Align::left);
 double text_width(cairo_t* cairo, const Font& font, double size, std::string_view text);
 
 /// Shortest conventional decimal form: "0.5", "-1", "10^{-3}", with a true minus sign; at most `digits` digits.

@@ -54,7 +54,7 @@ void seen_end_on(cairo_t* cairo, glm::dvec2 at, bool toward, double line) {
 
 }  // namespace
 
-void draw_triad(Image& image, const Font& font, const Camera& camera, const Box& box, double length) {
+void draw_triad(Image& image, const Font& font, const Inks& inks, const Camera& camera, const Box& box, double length) {
   const AnnotationSizes s = annotation_sizes(image);
   const double room = box.width() / 2;
   const glm::dvec2 origin((box.left + box.right) / 2, (box.top + box.bottom) / 2);
@@ -66,26 +66,26 @@ void draw_triad(Image& image, const Font& font, const Camera& camera, const Box&
             constexpr std::array<const char*, 3> names{"x", "y", "z"};
             std::array<int, 3> order{0, 1, 2};  // the farthest first
             std::sort(order.begin(), order.end(), [&](int a, int b) { return turn[a].z < turn[b].z; });
-            set_colour(cairo, ink);
+            set_colour(cairo, inks.text);
             for (const int axis : order) {
               const glm::dvec2 direction(turn[axis].x, -turn[axis].y);
               const double seen = glm::length(direction);
               if (seen < 0.12) {
                 seen_end_on(cairo, origin, turn[axis].z > 0, s.line);
-                draw_text_on_picture(cairo, font, s.text, origin.x - 0.55 * s.text, origin.y + 0.85 * s.text,
+                draw_text_on_picture(cairo, font, inks.rim, s.text, origin.x - 0.55 * s.text, origin.y + 0.85 * s.text,
                                      names[static_cast<std::size_t>(axis)], Align::right);
                 continue;
               }
               const glm::dvec2 tip = origin + length * direction;
               const glm::dvec2 name = tip + 0.72 * s.text * direction / seen;
               arrow(cairo, origin, tip, s.line);
-              draw_text_on_picture(cairo, font, s.text, name.x, name.y + 0.30 * s.text,
+              draw_text_on_picture(cairo, font, inks.rim, s.text, name.x, name.y + 0.30 * s.text,
                                    names[static_cast<std::size_t>(axis)], Align::centre);
             }
           });
 }
 
-void draw_flow_profile(Image& image, const Font& font, const FlowProfile& whole, double reach) {
+void draw_flow_profile(Image& image, const Font& font, const Inks& inks, const FlowProfile& whole, double reach) {
   FlowProfile profile = whole;
   std::erase_if(profile.points, [&](const glm::dvec2& p) { return std::abs(p.x) > reach * (1 + 1e-9); });
   const AnnotationSizes s = annotation_sizes(image);
@@ -107,7 +107,7 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& whole,
           {0, static_cast<int>(top - 2.2 * s.text), static_cast<int>(2.4 * s.margin + 2 * width),
            static_cast<int>(bottom - top + 4 * s.text)},
           [&](cairo_t* cairo) {
-            set_colour(cairo, soft_ink);
+            set_colour(cairo, inks.soft);
             cairo_set_line_width(cairo, 0.6 * s.line);
             cairo_move_to(cairo, axis, top);
             cairo_line_to(cairo, axis, bottom);
@@ -116,16 +116,16 @@ void draw_flow_profile(Image& image, const Font& font, const FlowProfile& whole,
               const glm::dvec2 tip = place(profile.points[k]);
               if (k % 4 == 0) arrow(cairo, {axis, tip.y}, tip, 0.8 * s.line);
             }
-            set_colour(cairo, ink);
+            set_colour(cairo, inks.text);
             cairo_set_line_width(cairo, s.line);
             cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
             for (const glm::dvec2& p : profile.points) cairo_line_to(cairo, place(p).x, place(p).y);
             cairo_stroke(cairo);
-            draw_text_on_picture(cairo, font, s.text, axis, top - 0.7 * s.text, "u_{∞}", Align::centre);
+            draw_text_on_picture(cairo, font, inks.rim, s.text, axis, top - 0.7 * s.text, "u_{∞}", Align::centre);
           });
 }
 
-void draw_inset(Image& image, const Font& font, const Inset& inset, const Box& box) {
+void draw_inset(Image& image, const Font& font, const Inks& inks, const Inset& inset, const Box& box) {
   const AnnotationSizes s = annotation_sizes(image);
   const double left = box.left, top = box.top, width = box.width(), height = box.height();
   const double scale = 0.5 * height / inset.half_height;
@@ -139,7 +139,7 @@ void draw_inset(Image& image, const Font& font, const Inset& inset, const Box& b
            static_cast<int>(height + 9)},
           [&](cairo_t* cairo) {
             cairo_rectangle(cairo, left, top, width, height);
-            set_colour(cairo, white);
+            set_colour(cairo, inks.paper);
             cairo_fill_preserve(cairo);
             cairo_save(cairo);
             cairo_clip(cairo);
@@ -155,7 +155,7 @@ void draw_inset(Image& image, const Font& font, const Inset& inset, const Box& b
             }
             cairo_restore(cairo);
             cairo_rectangle(cairo, left, top, width, height);
-            set_colour(cairo, soft_ink);
+            set_colour(cairo, inks.soft);
             cairo_set_line_width(cairo, 0.6 * s.line);
             cairo_stroke(cairo);
             // its axes, in the lower left corner of the box
@@ -163,8 +163,10 @@ void draw_inset(Image& image, const Font& font, const Inset& inset, const Box& b
             const double length = 1.5 * s.text, name = 0.8 * s.text;
             arrow(cairo, origin, origin + glm::dvec2(length, 0), 0.6 * s.line);
             arrow(cairo, origin, origin - glm::dvec2(0, length), 0.6 * s.line);
-            draw_text_on_picture(cairo, font, name, origin.x + length + 0.3 * name, origin.y + 0.25 * name, "x");
-            draw_text_on_picture(cairo, font, name, origin.x, origin.y - length - 0.35 * name, "z", Align::centre);
+            draw_text_on_picture(cairo, font, inks.rim, name, origin.x + length + 0.3 * name, origin.y + 0.25 * name,
+                                 "x");
+            draw_text_on_picture(cairo, font, inks.rim, name, origin.x, origin.y - length - 0.35 * name, "z",
+                                 Align::centre);
           });
 }
 

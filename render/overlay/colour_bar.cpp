@@ -30,7 +30,8 @@ std::vector<double> bar_ticks(double low, double high) {
   return ticks;
 }
 
-void draw_colour_bar(Image& image, const Font& font, const Legend& legend, const Box& bar, bool sign_dots) {
+void draw_colour_bar(Image& image, const Font& font, const Inks& inks, const Legend& legend, const Box& bar,
+                     bool sign_dots) {
   const BarSizes s = bar_sizes(image.height);
   const double margin = std::min(overlay_sizes(image.height).margin, image.width / 12.0);
   const double point = 0.9 * bar.width();  // of the ends
@@ -70,7 +71,7 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend, const
               cairo_fill(cairo);
             }
         }
-        set_colour(cairo, ink);
+        set_colour(cairo, inks.text);
         cairo_set_line_width(cairo, std::max(1.5 * image.height / 1080.0, 0.8));
         cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
         cairo_move_to(cairo, bar.left, bottom);
@@ -86,17 +87,17 @@ void draw_colour_bar(Image& image, const Font& font, const Legend& legend, const
         for (std::size_t k = 0; k < ticks.size(); ++k) {
           const double value = ticks[k];
           const double y = bottom - (value - legend.low) / (legend.high - legend.low) * bar.height();
-          set_colour(cairo, ink);
+          set_colour(cairo, inks.text);
           cairo_move_to(cairo, bar.left + bar.width(), y);
           cairo_line_to(cairo, bar.left + bar.width() + s.tick, y);
           cairo_stroke(cairo);
-          draw_text_on_picture(cairo, font, s.text, bar.left + bar.width() + s.tick + s.gap, y + 0.36 * s.text,
-                               texts[k]);
+          draw_text_on_picture(cairo, font, inks.rim, s.text, bar.left + bar.width() + s.tick + s.gap,
+                               y + 0.36 * s.text, texts[k]);
         }
         // centred above the bar as far as the edge of the picture allows
         const double width = text_width(cairo, font, 1.1 * s.text, legend.label);
         const double x = std::min(middle - width / 2, image.width - margin - width);
-        draw_text_on_picture(cairo, font, 1.1 * s.text, x, label, legend.label);
+        draw_text_on_picture(cairo, font, inks.rim, 1.1 * s.text, x, label, legend.label);
       });
 }
 

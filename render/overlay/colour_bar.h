@@ -1,6 +1,7 @@
 // The colour bar at the right edge of a picture.
 #pragma once
 
+#include "render/core/ground.h"
 #include "render/core/places.h"
 #include "render/image/picture_canvas.h"
 #include "render/scene/frame.h"
@@ -17,6 +18,7 @@ struct BarSizes {
 BarSizes bar_sizes(int picture_height);
 
 /// bar: its colours from bottom to top, without the pointed ends; whole pixels.
-void draw_colour_bar(Image& image, const Font& font, const Legend& legend, const Box& bar, bool sign_dots = false);
+void draw_colour_bar(Image& image, const Font& font, const Inks& inks, const Legend& legend, const Box& bar,
+                     bool sign_dots = false);
 
 }  // namespace render

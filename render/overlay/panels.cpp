@@ -23,7 +23,8 @@ int panel_columns(int count, int width, int height) {
 
 void paste(Image& into, const Image& part, int left, int top) {
   for (int y = 0; y < part.height; ++y)
-    std::copy_n(part.at(0, y), static_cast<std::size_t>(part.width) * 3, into.at(left, top + y));
+    std::copy_n(part.at(0, y), static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.channels),
+                into.at(left, top + y));
 }
 
 void draw_separators(Image& image, int columns, int rows, int width, int height) {
@@ -31,7 +32,7 @@ void draw_separators(Image& image, int columns, int rows, int width, int height)
   const auto fill = [&](int x0, int y0, int x1, int y1) {
     for (int y = std::max(y0, 0); y < std::min(y1, image.height); ++y)
       for (int x = std::max(x0, 0); x < std::min(x1, image.width); ++x)
-        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = 255;
+        for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] = c < 3 ? 255 : 0;
   };
   for (int c = 1; c < columns; ++c) fill(c * width - thickness, 0, c * width + thickness, image.height);
   for (int r = 1; r < rows; ++r) fill(0, r * height - thickness, image.width, r * height + thickness);

@@ -19,6 +19,7 @@ Camera make_camera(const Framing& framing, const Moment& moment) {
   camera.target = framing.target_at(moment);
   camera.half_height = framing.half_height / zoom;
   camera.half_width = framing.half_height / zoom * framing.aspect;
+  camera.depth = framing.depth;
   camera.perspective = framing.perspective;
   camera.follows = framing.follows;
 

@@ -13,6 +13,7 @@ struct Camera {
   glm::dvec3 target{0};                    ///< in the middle of the picture
   glm::dvec3 eye{0};                       ///< orthographic: far away
   double half_width = 1, half_height = 1;  ///< of the picture in the plane of the target
+  double depth = 1;                        ///< what the movie shows lies within +-depth of the target along the sight
   bool perspective = true;
   bool follows = false;  ///< moves with the vesicles
 

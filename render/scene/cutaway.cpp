@@ -6,9 +6,13 @@
 namespace render {
 
 Cut make_cut(const sim::Coefficients& position, const sim::Vec3& normal, double offset) {
+  return make_cut_at(position, normal, volume_moments(position).centroid + offset * normal.normalized());
+}
+
+Cut make_cut_at(const sim::Coefficients& position, const sim::Vec3& normal, const sim::Vec3& point) {
   CutPlane plane;
   plane.normal = normal.normalized();
-  plane.origin = volume_moments(position).centroid + offset * plane.normal;
+  plane.origin = point;
   plane.right = plane.normal.unitOrthogonal();
   plane.up = plane.normal.cross(plane.right);
   Cut result{to_glm(plane.normal), to_glm(plane.origin), {}};

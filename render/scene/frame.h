@@ -84,7 +84,8 @@ struct Inset {
 };
 
 struct Frame {
-  std::vector<Body> bodies;
+  std::vector<Body> bodies;  ///< those that may be seen
+  std::size_t vesicles = 0;  ///< of the state; 0: as many as bodies
   Camera camera;
   ViewParameters view;
   Captions captions;

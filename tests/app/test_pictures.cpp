@@ -136,7 +136,7 @@ TEST_CASE("processes draw the very frames and movie that one draws alone", "[com
 TEST_CASE("every movie format is written from the same frames, with a poster where asked for", "[commands]") {
   const Desk desk;
   REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
-  for (const char* format : {"mp4", "mkv", "gif", "webp"}) {
+  for (const char* format : {"mp4", "mkv", "gif", "webp", "webm", "mov", "apng"}) {
     INFO(format);
     const Outcome outcome =
         desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--format", format, "--set", "movie.poster=0.3"});
@@ -146,6 +146,31 @@ TEST_CASE("every movie format is written from the same frames, with a poster whe
   }
   CHECK(support::read_file(desk / "a/poster.png") == support::read_file(desk / "a/frames/000003.png"));
   CHECK_THAT(desk({"render", desk.file("t.h5"), "--format", "mp5"}).err, Contains("did you mean 'mp4'?"));
+}
+
+TEST_CASE("a movie without a ground is written where the format has transparency, and refused elsewhere",
+          "[commands]") {
+  const Desk desk;
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  const auto draw = [&](const char* format) {
+    return desk({"render", desk.file("t.h5"), "-o", desk.file("a"), "--format", format, "--set",
+                 "view.background=transparent"});
+  };
+  for (const char* format : {"mp4", "gif"}) {
+    const Outcome refused = draw(format);
+    CHECK(refused.status == 1);
+    CHECK_THAT(refused.err, Contains("has no transparency") && Contains("webm"));
+    CHECK_FALSE(fs::exists(desk / "a"));
+  }
+  for (const char* format : {"webm", "mov", "apng", "mkv", "webp"}) {
+    const Outcome outcome = draw(format);
+    INFO(format << ": " << outcome.err);
+    CHECK(outcome.status == 0);
+    CHECK(fs::file_size(desk / (std::string("a/movie.") + format)) > 100);
+  }
+  CHECK(render::read_png(desk / "a/frames/000000.png").image.channels == 4);
+  CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.background=drak"}).err,
+             Contains("did you mean 'dark'?"));
 }
 
 TEST_CASE("an odd size is refused for H.264 before anything is drawn, and drawn for other formats", "[commands]") {

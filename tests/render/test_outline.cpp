@@ -36,6 +36,7 @@ TEST_CASE("no ground is seen within the outline's width of an ellipsoid") {
       for (const double px : {1.0, 2.2, 8.0, 20.0}) {
         render::ViewParameters view = surfaces::bare_view(240, 240);
         view.supersampling = 2;
+        view.detail = "full";  // as wide as asked for, however small the body
         view.zoom = zoom;
         view.outline_width = 1080.0 / 240 * px / 2;  // px / 2 of this picture
         const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::ellipsoid(axes, oblique)}), view);
@@ -68,4 +69,48 @@ TEST_CASE("an outline of the usual width needs few triangles more than those at 
   CHECK(render::rim_triangles(mesh, frame.camera, 0.01).size() <
         2 * all / 5);                                                     // 5 px of 1080; the net is dense at its poles
   CHECK(render::rim_triangles(mesh, frame.camera, 2).size() >= all / 2);  // wider than the body: all back faces
+}
+
+TEST_CASE("the distance from the contour is that of a sphere's points from its edge, and large beyond the reach") {
+  const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::sphere()}), surfaces::bare_view());
+  const render::Mesh& mesh = frame.bodies[0].mesh;
+  const double unit = 240, radius = unit / frame.camera.half_height, reach = 20;
+  const std::vector<float> distance = render::contour_distances(mesh, frame.camera, unit, reach);
+  for (std::size_t k = 0; k < distance.size(); ++k) {
+    const glm::dvec2 place = frame.camera.picture_place(mesh.position[k]) * unit;
+    const double expected = radius - glm::length(place);
+    // To a sample: the contour is a polygon, whose pieces are handed on from vertex to vertex.
+    if (expected < reach - 1)
+      CHECK(static_cast<double>(distance[k]) == Approx(expected).margin(1));
+    else
+      CHECK(static_cast<double>(distance[k]) >= reach - 1);
+  }
+}
+
+TEST_CASE("a membrane that is nearly edge-on without turning over is not blackened") {
+  // A deep bowl seen from above: its wall is steep, and nowhere vertical but at the edge.
+  const auto bowl = [](const Vec3& s) -> Vec3 {
+    const double q = s.x() * s.x() + s.y() * s.y();
+    return {s.x(), -3.0 * (1 - q) * (1 - q) + 0.4 * s.z(), s.y()};
+  };
+  render::ViewParameters view = surfaces::bare_view(240, 240);
+  view.supersampling = 2;
+  view.style = "ghost";
+  view.line_width = 0;
+  view.outline_width = 1080.0 / 240 * 2;
+  render::Renderer renderer(render::parse_gl_choice("software"));
+  const render::Frame frame = surfaces::frame_of(surfaces::state_of({surfaces::vesicle(
+                                                     bowl, [](const Vec3& s) { return s; }, 8)}),
+                                                 view);
+  const render::Image image = render::draw_frame(renderer, frame);
+  const double radius = 120 / frame.camera.half_height;
+  int inner = 0, black = 0;
+  for (int y = 0; y < 240; ++y)
+    for (int x = 0; x < 240; ++x) {
+      if (std::hypot(x + 0.5 - 120, y + 0.5 - 120) > radius - 8) continue;
+      ++inner;
+      black += image.at(x, y)[0] < 90;
+    }
+  CHECK(inner > 5000);
+  CHECK(black == 0);
 }

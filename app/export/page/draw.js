@@ -12,9 +12,14 @@ class Scene {
     const array = size => new Float32Array(size * vertices);
     this.arrays = { position: array(3), normal: array(3), label: array(3), dots: array(2), scalar: array(1) };
     this.slopes = { theta: new Float32Array(3 * this.mesh.vertices), phi: new Float32Array(3 * this.mesh.vertices) };
-    this.places = [["position", 0, 3], ["normal", 1, 3], ["label", 2, 3], ["dots", 3, 2], ["scalar", 6, 1]];
+    this.places = [["position", 0, 3], ["normal", 1, 3], ["label", 2, 3], ["scalar", 7, 1]];
     this.buffers = {};
     for (const [name] of this.places) this.buffers[name] = this.buffer(this.arrays[name]);
+    // the two tracers nearest to each vertex, for the shader
+    this.dots = array(4);
+    this.nextDots = array(4);
+    this.dotBuffer = this.buffer(this.dots);
+    this.nextDotBuffer = this.buffer(this.nextDots);
     this.corners = gl.createBuffer();
     this.bodies = page.vesicles.map((_, v) => this.body(v));
     this.nothing = gl.createVertexArray();
@@ -46,27 +51,33 @@ class Scene {
   body(v) {
     const { gl } = this, array = gl.createVertexArray();
     gl.bindVertexArray(array);
-    for (const [name, place, size] of this.places) this.attribute(this.buffers[name], place, size, v * this.mesh.vertices);
+    this.bindVertices(v * this.mesh.vertices);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
     if (v === 0) gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.mesh.indices, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
     return { array, tracers: [] };
   }
 
+  // What changes from vertex to vertex, from vertex `first` on.
+  bindVertices(first) {
+    for (const [name, place, size] of this.places) this.attribute(this.buffers[name], place, size, first);
+    this.attribute(this.dotBuffer, 3, 4, first);
+    this.attribute(this.nextDotBuffer, 4, 4, first);
+  }
+
   makeGhost(vertices) {
-    const { gl, page, mesh } = this, colours = new Float32Array(3 * vertices);
+    const { gl, page, mesh } = this, paint = new Float32Array(4 * vertices), contour = new Float32Array(3 * vertices);
     page.vesicles.forEach((vesicle, v) => {
-      for (let k = 0; k < mesh.vertices; ++k) colours.set(vesicle.colour, 3 * (v * mesh.vertices + k));
+      for (let k = v * mesh.vertices; k < (v + 1) * mesh.vertices; ++k) {
+        paint.set([...vesicle.colour, 1], 4 * k);
+        contour.set(vesicle.soft_contour, 3 * k);
+      }
     });
-    const dots = new Float32Array(4 * vertices), next = new Float32Array(4 * vertices);
-    const ghost = { array: gl.createVertexArray(), dots, next, sorted: new Uint32Array(mesh.indices.length * page.vesicles.length) };
+    const ghost = { array: gl.createVertexArray(), sorted: new Uint32Array(mesh.indices.length * page.vesicles.length) };
     gl.bindVertexArray(ghost.array);
-    for (const [name, place, size] of this.places) if (name !== "dots") this.attribute(this.buffers[name], place, size);
-    ghost.dotBuffer = this.buffer(dots);
-    ghost.nextBuffer = this.buffer(next);
-    this.attribute(ghost.dotBuffer, 3, 4);
-    this.attribute(ghost.nextBuffer, 4, 4);
-    this.attribute(this.buffer(colours), 5, 3);
+    this.bindVertices(0);
+    this.attribute(this.buffer(paint), 5, 4);
+    this.attribute(this.buffer(contour), 10, 3);
     ghost.corners = gl.createBuffer();
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, ghost.corners);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, ghost.sorted, gl.DYNAMIC_DRAW);
@@ -189,15 +200,18 @@ class Scene {
       gl.bindVertexArray(body.array);
       action(body, page.vesicles[v]);
     });
-    each((body, vesicle) => this.drawBody(look, body, vesicle));
+    if (style.tracers) this.placeDots(matrices);
+    each((_, vesicle) => this.drawBody(look, vesicle));
     if (!outlined) return;
     const set = this.paint.use("outline", "", matrices);
+    set.pair("u_sample", [2 / gl.drawingBufferWidth, 2 / gl.drawingBufferHeight]);
     const hull = (vesicle, more, share) => {
-      const width = look.outline + more;
-      set.pair("u_push", [2 * width / gl.drawingBufferWidth, 2 * width / gl.drawingBufferHeight]);
-      set.vector("u_colour", vesicle.contour);
+      gl.disableVertexAttribArray(2);  // of labels: here it is colour and width, the same for all vertices
+      gl.vertexAttrib4f(2, ...vesicle.contour, look.outline);
+      set.number("u_more", more);
       set.number("u_alpha", share);
       gl.drawElements(gl.TRIANGLES, mesh.indices.length, gl.UNSIGNED_INT, 0);
+      gl.enableVertexAttribArray(2);
     };
     const step = page.paint.edge_step;
     gl.cullFace(gl.FRONT);
@@ -213,12 +227,25 @@ class Scene {
     gl.cullFace(gl.BACK);
   }
 
-  drawBody({ style, matrices, line, height }, body, vesicle) {
+  // The tracers of all vesicles as the vertices know them: places in eye space; 1 bright, 0 dark, -1 none.
+  placeDots(matrices) {
+    const { mesh, arrays, bodies, dots, nextDots } = this;
+    bodies.forEach(({ tracers }, v) => {
+      const places = tracers.map(tracer => [...eyePlace(matrices, tracer.point), tracer.bright ? 1 : 0]);
+      for (let k = v * mesh.vertices; k < (v + 1) * mesh.vertices; ++k) {
+        dots.set(places[arrays.dots[2 * k]] || [0, 0, 0, -1], 4 * k);
+        nextDots.set(places[arrays.dots[2 * k + 1]] || [0, 0, 0, -1], 4 * k);
+      }
+    });
+    this.refill(this.dotBuffer, dots);
+    this.refill(this.nextDotBuffer, nextDots);
+  }
+
+  drawBody({ style, matrices, line, height }, vesicle) {
     const { gl, page, mesh } = this, set = this.paint.use("body", style.defines, matrices);
-    const white = [1, 1, 1];
-    set.vector("u_colour", style.own_colour ? vesicle.colour : white);
-    set.vector("u_line_colour", style.own_colour ? vesicle.line : page.paint.white_line);
-    set.vector("u_contour", vesicle.contour);
+    gl.vertexAttrib4f(5, ...(style.own_colour ? vesicle.colour : [1, 1, 1]), 1);
+    gl.vertexAttrib3f(10, ...vesicle.contour);
+    set.vector("u_line_colour", page.paint.line_ink);
     set.number("u_half_width", line);
     if (style.field) {
       gl.activeTexture(gl.TEXTURE0);
@@ -227,32 +254,17 @@ class Scene {
       const spacing = Math.max(page.paint.sign_dot_spacing * height / 1080, page.paint.sign_dot_least);
       set.number("u_dot_spacing", 2 * spacing / height);
     }
-    if (style.tracers) {
-      const dots = new Float32Array(4 * Math.max(body.tracers.length, 1)).fill(-1);
-      body.tracers.forEach((tracer, k) => dots.set([...eyePlace(matrices, tracer.point), tracer.bright ? 1 : 0], 4 * k));
-      set.vectors4("u_tracer", dots);
-      this.paint.tracers(set, vesicle.radius / matrices.unit);
-    }
+    this.paint.tracers(set, vesicle.radius / matrices.unit);
     gl.drawElements(gl.TRIANGLES, mesh.indices.length, gl.UNSIGNED_INT, 0);
   }
 
   drawGhosts({ style, matrices, line, outline }) {
     const { gl, page, ghost, mesh, arrays, bodies } = this;
-    if (style.tracers) {
-      bodies.forEach(({ tracers }, v) => {
-        const places = tracers.map(tracer => [...eyePlace(matrices, tracer.point), tracer.bright ? 1 : 0]);
-        for (let k = v * mesh.vertices; k < (v + 1) * mesh.vertices; ++k) {
-          ghost.dots.set(places[arrays.dots[2 * k]] || [0, 0, 0, -1], 4 * k);
-          ghost.next.set(places[arrays.dots[2 * k + 1]] || [0, 0, 0, -1], 4 * k);
-        }
-      });
-      this.refill(ghost.dotBuffer, ghost.dots);
-      this.refill(ghost.nextBuffer, ghost.next);
-    }
+    if (style.tracers) this.placeDots(matrices);
     sortBackToFront(matrices.view, arrays.position, mesh, bodies.length, ghost.sorted);
     const set = this.paint.use("body", style.defines, matrices);
     set.vector("u_line_colour", page.paint.line_ink);
-    set.vector("u_contour", page.paint.outline_ink);
+    gl.vertexAttrib1f(9, 0);  // as if every place were at a contour
     set.number("u_contour_width", outline);
     set.number("u_half_width", line);
     set.number("u_opacity", page.paint.opacity);

@@ -21,13 +21,13 @@ class Paint {
   program(name, defines = "") {
     const key = name + "\n" + defines;
     if (this.programs.has(key)) return this.programs.get(key);
-    const { gl, page } = this, file = suffix => page.shaders[name + suffix];
+    const { gl, page } = this;
     const head = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n" + defines;
-    const library = page.libraries[name].map(part => page.shaders[part]).join("");
+    const text = suffix => head + page.libraries[name + suffix].map(part => page.shaders[part]).join("") + page.shaders[name + suffix];
     const whole = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, head + file(".vert")], [gl.FRAGMENT_SHADER, head + library + file(".frag")]]) {
+    for (const [kind, source] of [[gl.VERTEX_SHADER, text(".vert")], [gl.FRAGMENT_SHADER, text(".frag")]]) {
       const shader = gl.createShader(kind);
-      gl.shaderSource(shader, text);
+      gl.shaderSource(shader, source);
       gl.compileShader(shader);
       if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost())
         throw new Error(`the shader ${name} does not compile: ${gl.getShaderInfoLog(shader)}`);
@@ -46,7 +46,6 @@ class Paint {
       whole: (uniform, value) => gl.uniform1i(place(uniform), value),
       pair: (uniform, value) => gl.uniform2f(place(uniform), ...value),
       vector: (uniform, value) => gl.uniform3f(place(uniform), ...value),
-      vectors4: (uniform, values) => gl.uniform4fv(place(uniform), values),
       matrix: (uniform, values) => gl.uniformMatrix4fv(place(uniform), false, values),
     };
     this.programs.set(key, { whole, set });
@@ -68,12 +67,13 @@ class Paint {
   ground(set) {
     set.vector("u_top", this.page.paint.top);
     set.vector("u_bottom", this.page.paint.bottom);
+    set.number("u_ground", 1);
   }
 
   tracers(set, radius) {
     const { paint } = this.page;
     set.vector("u_tracer_bright", paint.tracer_bright);
     set.vector("u_tracer_dark", paint.tracer_dark);
-    set.number("u_tracer_radius", paint.tracer_radius * radius);
+    this.gl.vertexAttrib4f(6, 1, 0, paint.tracer_radius * radius, 1);  // all lines, all dots
   }
 }
