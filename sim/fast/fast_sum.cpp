@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <stdexcept>
 
 namespace sim {
 
@@ -46,10 +48,17 @@ void renew(FastParts& parts, const FastSetting& s, const Vec3& sides) {
       same_split && parts.setting.window == s.window && parts.setting.oversampling == s.oversampling;
   if (!same_split) parts.split = std::make_shared<const KernelSplit>(s.wave_number, s.accuracy);
   if (!same_window) parts.window = std::make_shared<const Window>(s.window, *parts.split, s.oversampling);
-  const auto nodes = Mesh::nodes_for(sides, Mesh::spacing(s.wave_number, s.oversampling), s.window);
-  if (!same_window || nodes != parts.nodes)
-    parts.mesh = std::make_shared<const Mesh>(*parts.split, *parts.window, s.oversampling, nodes);
-  parts.nodes = nodes;
+  if (s.cell) {
+    const bool same_cell = parts.setting.cell && *parts.setting.cell / parts.setting.cutoff == *s.cell / s.cutoff;
+    if (!same_window || !same_cell)
+      parts.mesh = std::make_shared<const Mesh>(*parts.split, *parts.window, s.oversampling, *s.cell / s.cutoff);
+    parts.nodes = {};
+  } else {
+    const auto nodes = Mesh::nodes_for(sides, Mesh::spacing(s.wave_number, s.oversampling), s.window);
+    if (!same_window || nodes != parts.nodes)
+      parts.mesh = std::make_shared<const Mesh>(*parts.split, *parts.window, s.oversampling, nodes);
+    parts.nodes = nodes;
+  }
   parts.setting = s;
 }
 
@@ -75,12 +84,14 @@ FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& b
   const Vec3 low = y.rowwise().minCoeff().cwiseMin(x.rowwise().minCoeff()),
              high = y.rowwise().maxCoeff().cwiseMax(x.rowwise().maxCoeff()), middle = 0.5 * (low + high);
   renew(parts, setting, high - low);
+  std::optional<Eigen::Matrix3d> cell;
+  if (setting.cell) cell = *setting.cell / setting.cutoff;
   return {setting,
           parts.split,
           parts.mesh,
           parts.mesh->place(y, middle, dual),
           parts.mesh->place(x, middle, false),
-          plan_pairs(scaled_bodies, scaled_groups, exclusions, setting.single_precision),
+          plan_pairs(scaled_bodies, scaled_groups, exclusions, setting.single_precision, cell),
           firsts(sources),
           firsts(targets)};
 }
@@ -92,6 +103,7 @@ std::vector<Points> fast_velocity(const FastSum& sum, std::span<const FastStreng
   std::vector<FastStrengths> scaled_coarse(coarse.begin(), coarse.end()), scaled_fine(fine.begin(), fine.end());
   bool dual = false;
   for (const FastStrengths& s : coarse) dual = dual || s.dual.cols() > 0;
+  if (dual && sum.sources.slopes.empty()) throw std::invalid_argument("the fast sum was planned without double layers");
   Points force(3, sum.first_source.back());
   Tensors tensors = Tensors::Zero(6, dual ? sum.first_source.back() : 0);
   parallel_for(bodies, [&](int j) {
@@ -106,6 +118,19 @@ std::vector<Points> fast_velocity(const FastSum& sum, std::span<const FastStreng
   });
   Points whole = Points::Zero(3, sum.first_target.back());
   sum.mesh->add_velocity(sum.sources, force, tensors, sum.targets, whole);
+  if (sum.setting.cell && dual) {
+    Vec3 moment = Vec3::Zero();
+    for (std::size_t j = 0; j < scaled_coarse.size(); ++j) {
+      const PairLists::Level& level = sum.pairs.bodies[j].levels[0];
+      const Tensors& q = scaled_coarse[j].dual;
+      for (Eigen::Index k = 0; k < std::min(q.cols(), level.points.cols()); ++k) {
+        const Eigen::Index point = level.patches.order[std::size_t(k)];
+        moment += level.points.col(k) * (q(0, point) + q(3, point) + q(5, point));
+      }
+    }
+    const double volume = std::abs(sum.setting.cell->determinant()) * std::pow(per_length, 3);
+    whole.colwise() -= 4 * std::numbers::pi / (3 * volume) * moment;
+  }
   std::vector<Points> velocity;
   for (std::size_t g = 0; g + 1 < sum.first_target.size(); ++g)
     velocity.emplace_back(whole.middleCols(sum.first_target[g], sum.first_target[g + 1] - sum.first_target[g]));

@@ -4,6 +4,10 @@
 //   u = mesh(all bodies) + residual(bodies that are seen) - smooth(bodies that are not),    u = sum of S f + D Q,
 //   S = I/r + r r/r^3,  D Q = r (r.Q r)/r^5.
 //
+// In a periodic cell the sums are over all images. The mean velocity over the whole cell, insides of bodies included,
+// is zero; for that the double layer needs a constant, -(4 pi/3V) sum (y - y0) tr Q with y from the middle y0 of its
+// body, which makes it 0 outside a body that moves as a whole, as in free space.
+//
 // What is not seen, the own surface and near pairs, is taken out again by the very points that put it in, so that the
 // error of their coarse rule cancels.
 #pragma once
@@ -14,12 +18,13 @@ namespace sim {
 
 /// How a sum is split and with which error.
 struct FastSetting {
-  double cutoff = 1;              ///< length
-  double wave_number = 14;        ///< c = K times the cut-off
-  double accuracy = 1e-5;         ///< of the polynomials
-  int window = 6;                 ///< nodes
-  double oversampling = 1.2;      ///< of the mesh
-  bool single_precision = false;  ///< of the sums over pairs
+  double cutoff = 1;                                   ///< length
+  double wave_number = 14;                             ///< c = K times the cut-off
+  double accuracy = 1e-5;                              ///< of the polynomials
+  int window = 6;                                      ///< nodes
+  double oversampling = 1.2;                           ///< of the mesh
+  bool single_precision = false;                       ///< of the sums over pairs
+  std::optional<Eigen::Matrix3d> cell = std::nullopt;  ///< sides of a periodic cell, in columns; none: free space
 };
 /// For a relative error of the velocities, with or without double layers. The cut-off is a matter of cost.
 FastSetting fast_setting(double tolerance, bool dual);
@@ -40,14 +45,15 @@ struct FastParts {
   std::shared_ptr<const Window> window;
   std::shared_ptr<const Mesh> mesh;
   FastSetting setting;
-  std::array<int, 3> nodes{};
+  std::array<int, 3> nodes{};  ///< in free space
 };
 
 /// `dual`: some strengths have double layers. `parts`: of an earlier sum; renewed where they do not fit.
 FastSum plan_fast_sum(const FastSetting&, const std::vector<FastBody>&, const std::vector<FastGroup>&,
                       const std::vector<Exclusion>&, bool dual, FastParts& parts);
 
-/// Velocity at the targets of each group. Does not depend on the number of threads.
+/// Velocity at the targets of each group. Does not depend on the number of threads. Throws std::invalid_argument when
+/// there are double layers that were not planned.
 std::vector<Points> fast_velocity(const FastSum&, std::span<const FastStrengths> coarse,
                                   std::span<const FastStrengths> fine);
 

@@ -51,8 +51,9 @@ double Mesh::spacing(double wave_number, double oversampling) { return pi / (ove
 
 std::array<int, 3> Mesh::nodes_for(const Eigen::Vector3d& sides, double spacing, int width) {
   std::array<int, 3> nodes{};
+  constexpr double most = 1e6;  // nobody has memory for so many
   // A window reaches half its width beyond a point on both sides; another node takes up rounding.
-  for (int d = 0; d < 3; ++d) nodes[d] = good_size(std::max(sides[d] / spacing, 0.0) + width + 1);
+  for (int d = 0; d < 3; ++d) nodes[d] = good_size(std::fmin(most, std::fmax(0, sides[d] / spacing)) + width + 1);
   return nodes;
 }
 
@@ -60,20 +61,46 @@ double Mesh::padded_nodes(const std::array<int, 3>& nodes) { return 8.0 * nodes[
 
 Mesh::Mesh(const KernelSplit& split, const Window& window, double oversampling, const std::array<int, 3>& nodes)
     : plan_(std::make_unique<const Plan>(split, window, oversampling, nodes)) {}
+Mesh::Mesh(const KernelSplit& split, const Window& window, double oversampling, const Eigen::Matrix3d& cell)
+    : plan_(std::make_unique<const Plan>(split, window, oversampling, cell)) {}
 Mesh::~Mesh() = default;
 
 Mesh::Plan::Plan(const KernelSplit& split, const Window& w, double oversampling, const std::array<int, 3>& node_counts)
-    : window(w), step(spacing(split.wave_number(), oversampling)), nodes(node_counts) {
-  for (int d = 0; d < 3; ++d) full[d] = 2 * nodes[d];
+    : window(w), periodic(false), step(spacing(split.wave_number(), oversampling)), nodes(node_counts) {
   cut = step * std::hypot(nodes[0], nodes[1], nodes[2]);
-  padded_width = (w.width() + lanes - 1) / lanes * lanes;
-  row = (static_cast<std::size_t>(std::max(full[0] + 2, nodes[0] + padded_width)) + lanes - 1) / lanes * lanes;
-  if (row % 128 == 0) row += lanes;  // rows a multiple of 1024 bytes apart share lines of the cache
-  plane = static_cast<std::size_t>(full[1]) * row;
-  block = std::clamp(nodes[2] / 8, 2, w.width());
-  blocks = (nodes[2] + block - 1) / block;
+  per_node = Eigen::Matrix3d::Identity() / step;
+  waves.setZero();
+  for (int d = 0; d < 3; ++d) {
+    full[d] = 2 * nodes[d];
+    waves(d, d) = pi / (step * nodes[d]);
+  }
+  make_layout();
   make_transforms();
-  make_multiplier(split);
+  make_free_multiplier(split);
+}
+
+Mesh::Plan::Plan(const KernelSplit& split, const Window& w, double oversampling, const Eigen::Matrix3d& cell)
+    : window(w), periodic(true) {
+  // All wave vectors within K: n_d is no larger than K |a_d| / 2 pi.
+  const double per_length = 1 / spacing(split.wave_number(), oversampling);
+  for (int d = 0; d < 3; ++d) nodes[d] = good_size(std::max(cell.col(d).norm() * per_length, w.width() + 1.0));
+  if (nodes[0] % 2 == 1) nodes[0] = 2 * good_size(nodes[0] / 2.0);
+  full = nodes;
+  const Eigen::Matrix3d inverse = cell.inverse();
+  per_node = Eigen::Vector3d(nodes[0], nodes[1], nodes[2]).asDiagonal() * inverse;
+  waves = 2 * pi * inverse.transpose();
+  make_layout();
+  make_transforms();
+  make_periodic_multiplier(split, std::abs(cell.determinant()));
+}
+
+void Mesh::Plan::make_layout() {
+  padded_width = (window.width() + lanes - 1) / lanes * lanes;
+  row = (std::size_t(std::max(full[0] + 2, nodes[0] + padded_width)) + lanes - 1) / lanes * lanes;
+  if (row % 128 == 0) row += lanes;  // rows a multiple of 1024 bytes apart share lines of the cache
+  plane = std::size_t(full[1]) * row;
+  block = std::clamp(nodes[2] / 8, 2, window.width());
+  blocks = (nodes[2] + block - 1) / block;
 }
 
 Mesh::Plan::~Plan() {
@@ -100,7 +127,7 @@ void Mesh::Plan::make_transforms() {
 }
 
 /// The smooth kernel, windows divided out, on a mesh large enough for it, cut to the doubled mesh in space.
-void Mesh::Plan::make_multiplier(const KernelSplit& split) {
+void Mesh::Plan::make_free_multiplier(const KernelSplit& split) {
   std::array<int, 3> large{}, count{};
   std::array<std::vector<double>, 3> deconvolved;
   for (int d = 0; d < 3; ++d) {
@@ -140,6 +167,25 @@ void Mesh::Plan::make_multiplier(const KernelSplit& split) {
   });
 }
 
+void Mesh::Plan::make_periodic_multiplier(const KernelSplit& split, double volume) {
+  const std::array<std::size_t, 3> size = multiplier_size();
+  multiplier.resize(size[0] * size[1] * size[2]);
+  std::array<std::vector<double>, 3> deconvolved;
+  for (int d = 0; d < 3; ++d)
+    for (int n = 0; n < full[d]; ++n)
+      deconvolved[d].push_back(std::pow(window.transform(2 * pi * signed_wave(n, d) / full[d]), -2));
+  parallel_for(full[1], [&](int y) {
+    for (std::size_t x = 0; x < size[0]; ++x)
+      for (int z = 0; z < full[2]; ++z) {
+        const double square = (waves * Eigen::Vector3d(double(x), signed_wave(y, 1), signed_wave(z, 2))).squaredNorm();
+        multiplier[(std::size_t(y) * size[0] + x) * size[2] + std::size_t(z)] =
+            square == 0 ? 0
+                        : 8 * pi * split.multiplier(std::sqrt(square)) / (square * square * volume) *
+                              deconvolved[0][x] * deconvolved[1][std::size_t(y)] * deconvolved[2][std::size_t(z)];
+      }
+  });
+}
+
 MeshPoints Mesh::place(const Points& points, const Eigen::Vector3d& middle, bool slopes) const {
   const Plan& m = *plan_;
   const int width = m.window.width(), padded = m.padded_width;
@@ -153,19 +199,22 @@ MeshPoints Mesh::place(const Points& points, const Eigen::Vector3d& middle, bool
   constexpr int piece = 512;
   parallel_for(static_cast<int>((placed.count + piece - 1) / piece), [&](int part) {
     const Eigen::Index end = std::min<Eigen::Index>(placed.count, Eigen::Index(part + 1) * piece);
-    for (Eigen::Index k = Eigen::Index(part) * piece; k < end; ++k)
+    for (Eigen::Index k = Eigen::Index(part) * piece; k < end; ++k) {
+      const Eigen::Vector3d x = m.per_node * (points.col(k) - middle);
       for (int d = 0; d < 3; ++d) {
         const std::size_t slot = std::size_t(3 * k + d);
-        const double x = (points(d, k) - middle[d]) / m.step + (m.nodes[d] - 1) / 2.0, low = x - width / 2.0;
-        const double first = std::ceil(low);
-        if (!(first >= 0 && first + width <= m.nodes[d])) throw std::invalid_argument("a point lies outside the mesh");
-        placed.start[slot] = static_cast<int>(first);
+        const double low = x[d] + (m.nodes[d] - 1) / 2.0 - width / 2.0, first = std::ceil(low);
+        const double start = m.periodic ? first - m.nodes[d] * std::floor(first / m.nodes[d]) : first;
+        if (!(start >= 0 && start + (m.periodic ? 1 : width) <= m.nodes[d]))
+          throw std::domain_error("a point lies outside the mesh");
+        placed.start[slot] = static_cast<int>(start);
         double* w = &placed.windows[slot * std::size_t(padded)];
         double* s = slopes ? &placed.slopes[slot * std::size_t(padded)] : nullptr;
         m.window.evaluate(first - low, w, s);
         for (int j = width; j < padded; ++j) w[j] = 0;
-        for (int j = 0; s && j < padded; ++j) s[j] = j < width ? s[j] / m.step : 0;
+        for (int j = width; s && j < padded; ++j) s[j] = 0;
       }
+    }
   });
   // By blocks of planes, then by columns of 8 x 8 nodes.
   std::vector<std::tuple<int, int, int, int>> keys;
@@ -174,18 +223,15 @@ MeshPoints Mesh::place(const Points& points, const Eigen::Vector3d& middle, bool
     keys.emplace_back(at[2] / m.block, at[1] / 8, at[0] / 8, static_cast<int>(k));
   }
   std::sort(keys.begin(), keys.end());
-  std::vector<std::size_t> begin(std::size_t(m.blocks) + 1, 0);
-  for (const auto& [block, y, x, k] : keys) {
-    placed.order.push_back(k);
-    ++begin[std::size_t(block) + 1];
-  }
-  for (int b = 0; b < m.blocks; ++b) begin[std::size_t(b) + 1] += begin[std::size_t(b)];
+  for (const auto& key : keys) placed.order.push_back(std::get<3>(key));
   placed.first.push_back(0);
   for (int b = 0; b < m.blocks; ++b) {
-    const int reach = (width + m.block - 1) / m.block;  // windows of points in so many earlier blocks reach here
-    for (std::size_t i = begin[std::size_t(std::max(0, b - reach))]; i < begin[std::size_t(b) + 1]; ++i)
-      if (placed.start[3 * std::size_t(placed.order[i]) + 2] + width > b * m.block)
-        placed.touching.push_back(placed.order[i]);
+    const int z0 = b * m.block, z1 = std::min(m.nodes[2], z0 + m.block);
+    const auto reaches = [&](int start) {
+      return (start < z1 && start + width > z0) || start + width - m.nodes[2] > z0;
+    };
+    for (const int k : placed.order)
+      if (reaches(placed.start[3 * std::size_t(k) + 2])) placed.touching.push_back(k);
     placed.first.push_back(static_cast<int>(placed.touching.size()));
   }
   return placed;
@@ -201,7 +247,7 @@ void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Te
   m.multiply_columns(fields);
   m.backward_planes(fields);
   m.read(fields, targets, velocity);
-  velocity.colwise() += 2 / m.cut * force.rowwise().sum();
+  if (!m.periodic) velocity.colwise() += 2 / m.cut * force.rowwise().sum();
 }
 
 }  // namespace sim

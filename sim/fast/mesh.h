@@ -8,6 +8,9 @@
 // In free space the biharmonic function r is replaced by -(R - r)^2/(2R), 0 beyond R, which differs from it by a
 // constant and by r^2 within the distances that occur, and 2/R times the net force makes up for it. Meshes are doubled
 // in each direction, so that no image is seen.
+//
+// In a periodic cell, which may be sheared, wave vectors are those of its lattice, and the one of zero is left out: the
+// mean velocity over the whole cell is zero, and a uniform pressure gradient balances the net force.
 #pragma once
 
 #include "sim/core/raw_memory.h"
@@ -33,10 +36,13 @@ struct MeshPoints {
   std::vector<int> touching, first;   ///< the points whose windows reach into block b: touching[first[b]] ...
 };
 
-/// Plan: a free-space mesh of so many nodes; immutable.
+/// Plan; immutable.
 class Mesh {
  public:
+  /// In free space, of so many nodes.
   Mesh(const KernelSplit&, const Window&, double oversampling, const std::array<int, 3>& nodes);
+  /// Of a periodic cell; the columns of the matrix are its sides.
+  Mesh(const KernelSplit&, const Window&, double oversampling, const Eigen::Matrix3d& cell);
   ~Mesh();
   Mesh(const Mesh&) = delete;
 
@@ -47,8 +53,8 @@ class Mesh {
   /// Transforms are of this many nodes.
   static double padded_nodes(const std::array<int, 3>& nodes);
 
-  /// Points in a box around the middle of the mesh, which is at `middle`. Throws std::invalid_argument when a window
-  /// would leave the mesh.
+  /// Points in a box around the middle of the mesh, which is at `middle`; anywhere, in a periodic cell. Throws
+  /// std::domain_error when a window would leave the mesh.
   MeshPoints place(const Points&, const Eigen::Vector3d& middle, bool slopes) const;
   /// Adds the smooth part of all sources at all targets; without double layer `dual` has no columns. Does not depend on
   /// the number of threads.

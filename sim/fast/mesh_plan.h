@@ -12,27 +12,40 @@ struct Mesh::Plan {
   enum Transform { to_x, to_y, from_y, from_x, to_z, from_z, transforms };  ///< spectra in x, y, z and back
 
   Window window;
-  double step;                     ///< distance of nodes
-  double cut;                      ///< R
-  std::array<int, 3> nodes, full;  ///< of the mesh, and doubled
-  int padded_width;                ///< of windows, in whole vectors
-  int block, blocks;               ///< planes in z that one thread fills, and the number of such blocks
-  std::size_t row, plane;          ///< doubles from one row in x, plane in z to the next
-  RawVector<double> multiplier;    ///< octant: [y][x][z], nodes + 1 each
+  bool periodic;
+  double step = 0, cut = 0;         ///< in free space: distance of nodes, R
+  std::array<int, 3> nodes, full;   ///< of the mesh, and of its transforms: doubled in free space
+  Eigen::Matrix3d per_node, waves;  ///< from places to nodes; from numbers of waves to wave vectors
+  int padded_width;                 ///< of windows, in whole vectors
+  int block, blocks;                ///< planes in z that one thread fills, and the number of such blocks
+  std::size_t row, plane;           ///< doubles from one row in x, plane in z to the next
+  RawVector<double> multiplier;     ///< [y][x][z]; in free space an octant, nodes + 1 each
   std::array<fftw_plan, transforms> fftw{};
 
   Plan(const KernelSplit&, const Window&, double oversampling, const std::array<int, 3>& node_counts);
+  Plan(const KernelSplit&, const Window&, double oversampling, const Eigen::Matrix3d& cell);
   ~Plan();
   Plan(const Plan&) = delete;
 
+  void make_layout();
   void make_transforms();
-  void make_multiplier(const KernelSplit&);
+  void make_free_multiplier(const KernelSplit&);
+  void make_periodic_multiplier(const KernelSplit&, double volume);
   using Field = RawVector<double>;
   void spread(const MeshPoints&, const Points& force, const Tensors& dual, std::span<Field>) const;
   void forward_planes(std::span<Field>) const;
   void multiply_columns(std::span<Field>) const;
   void backward_planes(std::span<Field>) const;
   void read(std::span<const Field>, const MeshPoints&, Points& velocity) const;
+  /// Of the wave number in place n of a transform.
+  int signed_wave(int n, int d) const { return n <= full[d] / 2 ? n : n - full[d]; }
+  /// ... its place in the multiplier, whose size this is in x, y, z.
+  std::size_t wave_place(int n, int d) const { return std::size_t(periodic || n <= nodes[d] ? n : full[d] - n); }
+  std::array<std::size_t, 3> multiplier_size() const {
+    if (!periodic) return {std::size_t(nodes[0]) + 1, std::size_t(nodes[1]) + 1, std::size_t(nodes[2]) + 1};
+    return {std::size_t(full[0]) / 2 + 1, std::size_t(full[1]), std::size_t(full[2])};
+  }
+  int wrapped(int node, int d) const { return node < nodes[d] ? node : node - nodes[d]; }
   std::size_t at(int z, int y, int x) const {
     return static_cast<std::size_t>(z) * plane + static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
   }

@@ -2,9 +2,8 @@
 #include "sim/core/parallel.h"
 #include "sim/fast/mesh_plan.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstring>
-#include <numbers>
 
 namespace sim {
 
@@ -17,13 +16,14 @@ struct PointStrength {
   double force[3], gradient[3][3], trace;
 };
 
-PointStrength strength_of(const Points& force, const Tensors& dual, Eigen::Index k) {
+PointStrength strength_of(const Points& force, const Tensors& dual, Eigen::Index k, const Eigen::Matrix3d& per_node) {
   PointStrength s{{force(0, k), force(1, k), force(2, k)}, {}, 0};
   if (dual.cols() == 0) return s;
   constexpr int component[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   // The force less a third of the divergence of Q: slopes are those in the place of the node.
   for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) s.gradient[a][b] = -dual(component[a][b], k) / 3;
+    for (int b = 0; b < 3; ++b)
+      for (int c = 0; c < 3; ++c) s.gradient[a][b] -= dual(component[a][c], k) * per_node(b, c) / 3;
   s.trace = dual(0, k) + dual(3, k) + dual(5, k);
   return s;
 }
@@ -73,7 +73,7 @@ void Mesh::Plan::spread(const MeshPoints& points, const Points& force, const Ten
         const std::size_t k = std::size_t(points.touching[std::size_t(i)]);
         const int* start = &points.start[3 * k];
         const double *wx = &points.windows[3 * padded * k], *wy = wx + padded, *wz = wy + padded;
-        const PointStrength s = strength_of(force, dual, Eigen::Index(k));
+        const PointStrength s = strength_of(force, dual, Eigen::Index(k), per_node);
         Lane values[vectors], slopes[vectors] = {};
         load_window<vectors>(wx, values);
         const double *dx = nullptr, *dy = nullptr, *dz = nullptr;
@@ -83,20 +83,23 @@ void Mesh::Plan::spread(const MeshPoints& points, const Points& force, const Ten
           dz = dy + padded;
           load_window<vectors>(dx, slopes);
         }
-        for (int z = std::max(0, z0 - start[2]); z < std::min(width, z1 - start[2]); ++z)
+        for (int z = 0; z < width; ++z) {
+          const int in_z = wrapped(start[2] + z, 2);
+          if (in_z < z0 || in_z >= z1) continue;
           for (int y = 0; y < width; ++y) {
-            const std::size_t to = at(start[2] + z, start[1] + y, start[0]);
+            const std::size_t to = at(in_z, wrapped(start[1] + y, 1), start[0]);
             const double w = wy[y] * wz[z];
             if (fields.size() == 3) {
               for (std::size_t c = 0; c < 3; ++c) add_row<vectors>(&fields[c][to], s.force[c] * w, values);
               continue;
             }
-            const double in_y = dy[y] * wz[z], in_z = wy[y] * dz[z];
+            const double along_y = dy[y] * wz[z], along_z = wy[y] * dz[z];
             for (std::size_t c = 0; c < 3; ++c)
-              add_row<vectors>(&fields[c][to], s.force[c] * w + s.gradient[c][1] * in_y + s.gradient[c][2] * in_z,
+              add_row<vectors>(&fields[c][to], s.force[c] * w + s.gradient[c][1] * along_y + s.gradient[c][2] * along_z,
                                values, s.gradient[c][0] * w, slopes);
             add_row<vectors>(&fields[3][to], s.trace * w, values);
           }
+        }
       }
     });
   });
@@ -105,6 +108,10 @@ void Mesh::Plan::spread(const MeshPoints& points, const Points& force, const Ten
 void Mesh::Plan::forward_planes(std::span<Field> fields) const {
   parallel_for(int(fields.size()) * nodes[2], [&](int task) {
     double* g = &fields[std::size_t(task / nodes[2])][at(task % nodes[2], 0, 0)];
+    for (int y = 0; periodic && y < nodes[1]; ++y) {  // windows reached beyond the end of the rows
+      double* begin = g + std::size_t(y) * row;
+      for (int x = 0; x < padded_width; ++x) begin[x] += begin[nodes[0] + x];
+    }
     fftw_execute_dft_r2c(fftw[to_x], g, complex_of(g));
     fftw_execute_dft(fftw[to_y], complex_of(g), complex_of(g));
   });
@@ -115,28 +122,31 @@ void Mesh::Plan::backward_planes(std::span<Field> fields) const {
     double* g = &fields[std::size_t(task / nodes[2])][at(task % nodes[2], 0, 0)];
     fftw_execute_dft(fftw[from_y], complex_of(g), complex_of(g));
     fftw_execute_dft_c2r(fftw[from_x], complex_of(g), g);
+    for (int y = 0; periodic && y < nodes[1]; ++y) {
+      double* begin = g + std::size_t(y) * row;
+      std::copy_n(begin, padded_width, begin + nodes[0]);
+    }
   });
 }
 
 namespace {
 
-/// u = b [k^2 g - k (k.g + (i/6) k^2 t)] for `width` columns in x of one z; numbers are pairs of doubles.
-struct ColumnFactors {
-  double kx[2 * 16], b[2 * 16];
-};
-void apply_kernel(const ColumnFactors& f, double ky, double kz, int width, double* const* channels, std::size_t offset,
-                  bool dual) {
+/// u = b [k^2 g - k (k.g + (i/6) k^2 t)] for `width` columns in x of one y and z, with wave vectors start + i step;
+/// numbers are pairs of doubles.
+void apply_kernel(const double* b, const Eigen::Vector3d& start, const Eigen::Vector3d& step, int width,
+                  double* const* channels, std::size_t offset, bool dual) {
   double *u = channels[0] + offset, *v = channels[1] + offset, *w = channels[2] + offset;
   const double* t = channels[3] + offset;
-  for (int i = 0; i < 2 * width; i += 2) {
-    const double kx = f.kx[i], m = f.b[i], square = m * (kx * kx + ky * ky + kz * kz), sixth = square / 6;
-    for (int part = 0; part < 2; ++part) {
-      double along = m * (kx * u[i + part] + ky * v[i + part] + kz * w[i + part]);
+  for (int i = 0; i < width; ++i) {
+    const double kx = start[0] + i * step[0], ky = start[1] + i * step[1], kz = start[2] + i * step[2];
+    const double square = b[i] * (kx * kx + ky * ky + kz * kz), sixth = square / 6;
+    for (int n = 2 * i; n < 2 * i + 2; ++n) {
+      double along = b[i] * (kx * u[n] + ky * v[n] + kz * w[n]);
       // The real part of i t is less the imaginary one of t.
-      if (dual) along += part == 0 ? -sixth * t[i + 1] : sixth * t[i];
-      u[i + part] = square * u[i + part] - along * kx;
-      v[i + part] = square * v[i + part] - along * ky;
-      w[i + part] = square * w[i + part] - along * kz;
+      if (dual) along += n == 2 * i ? -sixth * t[n + 1] : sixth * t[n - 1];
+      u[n] = square * u[n] - along * kx;
+      v[n] = square * v[n] - along * ky;
+      w[n] = square * w[n] - along * kz;
     }
   }
 }
@@ -145,11 +155,7 @@ void apply_kernel(const ColumnFactors& f, double ky, double kz, int width, doubl
 
 void Mesh::Plan::multiply_columns(std::span<Field> fields) const {
   const int half = full[0] / 2 + 1, pieces = (half + batch - 1) / batch;
-  const std::size_t mx = std::size_t(nodes[0]) + 1, mz = std::size_t(nodes[2]) + 1;
-  const auto wave = [&](int n, int d) {
-    return std::numbers::pi / step * (n <= nodes[d] ? n : n - full[d]) / nodes[d];
-  };
-  const auto mirrored = [&](int n, int d) { return std::size_t(n <= nodes[d] ? n : full[d] - n); };
+  const std::array<std::size_t, 3> size = multiplier_size();
   parallel_for(full[1], [&](int y) {
     const std::size_t length = std::size_t(2 * batch) * std::size_t(full[2]);
     RawVector<double> buffer(4 * length);
@@ -161,19 +167,18 @@ void Mesh::Plan::multiply_columns(std::span<Field> fields) const {
       for (std::size_t c = 0; c < fields.size(); ++c) {
         if (width < batch)
           std::memset(channels[c], 0, length * sizeof(double));
-        else
+        else if (!periodic)
           std::memset(channels[c] + length / 2, 0, length / 2 * sizeof(double));
         for (int z = 0; z < nodes[2]; ++z)
           std::memcpy(channels[c] + std::size_t(2 * batch) * std::size_t(z), &fields[c][at(z, y, 2 * x0)], bytes);
         fftw_execute_dft(fftw[to_z], complex_of(channels[c]), complex_of(channels[c]));
       }
-      ColumnFactors factors{};
-      for (int i = 0; i < width; ++i) factors.kx[2 * i] = wave(x0 + i, 0);
       for (int z = 0; z < full[2]; ++z) {
+        double b[batch];
         for (int i = 0; i < width; ++i)
-          factors.b[2 * i] = multiplier[(mirrored(y, 1) * mx + std::size_t(x0 + i)) * mz + mirrored(z, 2)];
-        apply_kernel(factors, wave(y, 1), wave(z, 2), width, channels, std::size_t(2 * batch) * std::size_t(z),
-                     fields.size() == 4);
+          b[i] = multiplier[(wave_place(y, 1) * size[0] + std::size_t(x0 + i)) * size[2] + wave_place(z, 2)];
+        apply_kernel(b, waves * Eigen::Vector3d(x0, signed_wave(y, 1), signed_wave(z, 2)), waves.col(0), width,
+                     channels, std::size_t(2 * batch) * std::size_t(z), fields.size() == 4);
       }
       for (std::size_t c = 0; c < 3; ++c) {
         fftw_execute_dft(fftw[from_z], complex_of(channels[c]), complex_of(channels[c]));
@@ -198,7 +203,7 @@ void Mesh::Plan::read(std::span<const Field> fields, const MeshPoints& points, P
         Lane sums[3][vectors] = {};
         for (int z = 0; z < width; ++z)
           for (int y = 0; y < width; ++y) {
-            const std::size_t from = at(start[2] + z, start[1] + y, start[0]);
+            const std::size_t from = at(wrapped(start[2] + z, 2), wrapped(start[1] + y, 1), start[0]);
             const double w = wy[y] * wz[z];
             for (std::size_t c = 0; c < 3; ++c)
               for (int v = 0; v < vectors; ++v) sums[c][v] += w * load_lane(&fields[c][from + std::size_t(lanes * v)]);

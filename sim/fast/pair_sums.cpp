@@ -1,159 +1,16 @@
 #include "sim/fast/pair_sums.h"
 
-#include "sim/core/cells.h"
 #include "sim/core/lanes.h"
 #include "sim/core/parallel.h"
 
 #include <algorithm>
-#include <limits>
-#include <stdexcept>
-#include <utility>
 
 namespace sim {
 
 namespace {
 
-constexpr int source_patch = 8, unrolled = 4;  // lists are a multiple of that long
-
-Box box_of(const Points& points) {
-  constexpr double huge = std::numeric_limits<double>::max();
-  if (points.cols() == 0) return {Vec3::Constant(huge), Vec3::Constant(-huge)};
-  return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
-}
-
-PairLists::Level level_of(const Points& points, const Vec3& centre) {
-  if (points.cols() > std::numeric_limits<std::uint16_t>::max())
-    throw std::invalid_argument("a body of the fast sum has at most 65535 points");
-  PairLists::Level level{divide(points, source_patch), Points(3, points.cols())};
-  for (Eigen::Index k = 0; k < points.cols(); ++k)
-    level.points.col(k) = points.col(level.patches.order[std::size_t(k)]) - centre;
-  level.patches.centres.colwise() -= centre;
-  return level;
-}
-
-/// The points of a patch from a centre, one a lane; lanes beyond its end repeat the last.
-template <class Real>
-struct PatchLanes {
-  LaneOf<Real> x[3];
-};
-template <class Real>
-PatchLanes<Real> lanes_of(const Points& points, std::span<const int> members, const Vec3& centre) {
-  PatchLanes<Real> p;
-  for (int d = 0; d < 3; ++d)
-    for (int l = 0; l < lane_count<Real>; ++l)
-      p.x[d][l] = static_cast<Real>(points(d, members[std::min<std::size_t>(l, members.size() - 1)]) - centre[d]);
-  return p;
-}
-
-std::span<const int> members_of(const Patches& patches, int patch) {
-  return {patches.order.begin() + patches.first[std::size_t(patch)],
-          patches.order.begin() + patches.first[std::size_t(patch) + 1]};
-}
-
-/// What a patch of targets sees of a body, appended to the list of its group.
-template <class Real>
-void see(PairLists::Group& group, int patch, int number, const PairLists::Body& body, double fine_within,
-         std::uint32_t seeing) {
-  const Vec3 middle = group.patches.centres.col(patch) - body.centre;
-  const double radius = group.patches.radii[std::size_t(patch)];
-  const auto away = [&](const PairLists::Level& level, int b) {
-    return (level.patches.centres.col(b) - middle).norm() - level.patches.radii[std::size_t(b)] - radius;
-  };
-  double nearest = std::numeric_limits<double>::infinity();
-  for (int b = 0; b < body.levels[0].patches.count(); ++b) nearest = std::min(nearest, away(body.levels[0], b));
-  if (nearest > 1) return;
-  const int finely = nearest < fine_within && body.levels[1].points.cols() > 0;
-  const PairLists::Level& level = body.levels[std::size_t(finely)];
-  const PatchLanes<Real> targets = lanes_of<Real>(group.points, members_of(group.patches, patch), body.centre);
-  const std::size_t first = group.sources.size();
-  for (int b = 0; b < level.patches.count(); ++b) {
-    if (away(level, b) > 1) continue;
-    for (int k = level.patches.first[std::size_t(b)]; k < level.patches.first[std::size_t(b) + 1]; ++k) {
-      LaneOf<Real> square{};
-      for (int d = 0; d < 3; ++d) {
-        const LaneOf<Real> r = targets.x[d] - static_cast<Real>(level.points(d, k));
-        square += r * r;
-      }
-      Real least = square[0];
-      for (int l = 1; l < lane_count<Real>; ++l) least = std::min(least, square[l]);
-      if (least < 1) group.sources.push_back(static_cast<std::uint16_t>(k));
-    }
-  }
-  if (group.sources.size() == first) return;
-  while ((group.sources.size() - first) % unrolled != 0)
-    group.sources.push_back(static_cast<std::uint16_t>(level.points.cols()));
-  group.segments.push_back({number, patch, finely, static_cast<int>(group.sources.size() - first), seeing, first});
-}
-
-/// Lanes of a patch that are not among the excluded targets, which ascend.
-std::uint32_t seeing_lanes(const Patches& patches, int patch, const Exclusion* excluded) {
-  std::uint32_t seeing = 0;
-  const std::span<const int> members = members_of(patches, patch);
-  for (std::size_t l = 0; l < members.size(); ++l)
-    if (!excluded || !std::binary_search(excluded->targets.begin(), excluded->targets.end(), members[l]))
-      seeing |= std::uint32_t(1) << l;
-  return seeing;
-}
-
-}  // namespace
-
-double PairLists::pairs() const {
-  double sum = 0;
-  for (const Group& group : groups)
-    sum += static_cast<double>(group.sources.size()) * (single_precision ? lane_count<float> : lane_count<double>);
-  return sum;
-}
-
-PairLists plan_pairs(const std::vector<FastBody>& bodies, const std::vector<FastGroup>& groups,
-                     const std::vector<Exclusion>& exclusions, bool single_precision) {
-  PairLists lists;
-  lists.single_precision = single_precision;
-  lists.bodies.resize(bodies.size());
-  lists.groups.resize(groups.size());
-  std::vector<Box> boxes;
-  for (const FastBody& body : bodies) boxes.push_back(united(box_of(body.coarse), box_of(body.fine)));
-  for (const FastGroup& group : groups) boxes.push_back(box_of(group.points));
-  parallel_for(static_cast<int>(bodies.size()), [&](int j) {
-    const Vec3 centre = 0.5 * (boxes[std::size_t(j)].low + boxes[std::size_t(j)].high);
-    lists.bodies[std::size_t(j)] = {
-        centre, {level_of(bodies[std::size_t(j)].coarse, centre), level_of(bodies[std::size_t(j)].fine, centre)}};
-  });
-  std::vector<std::vector<int>> seen(groups.size());
-  const int bodies_end = static_cast<int>(bodies.size());
-  for (const auto& [a, b] : near_pairs(boxes, 1))
-    if (a < bodies_end && b >= bodies_end && groups[std::size_t(b - bodies_end)].body != a)
-      seen[std::size_t(b - bodies_end)].push_back(a);
-  std::vector<std::vector<const Exclusion*>> excluded(groups.size());
-  for (const Exclusion& e : exclusions) excluded[std::size_t(e.group)].push_back(&e);
-  parallel_for(static_cast<int>(groups.size()), [&](int g) {
-    const FastGroup& from = groups[std::size_t(g)];
-    PairLists::Group& group = lists.groups[std::size_t(g)];
-    group.points = from.points;
-    group.patches = divide(from.points, single_precision ? lane_count<float> : lane_count<double>);
-    if (from.body >= 0) group.taken.push_back({from.body, group.patches.order});
-    for (const Exclusion* e : excluded[std::size_t(g)])
-      if (e->surface != from.body) group.taken.push_back({e->surface, e->targets});
-    for (const int j : seen[std::size_t(g)]) {
-      const Exclusion* without = nullptr;
-      for (const Exclusion* e : excluded[std::size_t(g)])
-        if (e->surface == j) without = e;
-      for (int patch = 0; patch < group.patches.count(); ++patch) {
-        if (distance(boxes[std::size_t(j)], group.patches.centres.col(patch)) >
-            1 + group.patches.radii[std::size_t(patch)])
-          continue;
-        const std::uint32_t seeing = seeing_lanes(group.patches, patch, without);
-        if (seeing == 0) continue;
-        const auto look = single_precision ? see<float> : see<double>;
-        look(group, patch, j, lists.bodies[std::size_t(j)], bodies[std::size_t(j)].fine_within, seeing);
-      }
-    }
-  });
-  return lists;
-}
-
-namespace {
-
 enum class Part { residual, smooth };
+constexpr int unrolled = PairLists::multiple;
 
 /// A source as the loops read it: point, force, and for the double layer Q and its trace.
 template <bool dual>
@@ -289,9 +146,9 @@ void add_all(const PairLists& lists, const KernelSplit& split, std::span<const F
     const PairLists::Group& group = lists.groups[std::size_t(g)];
     Points& u = velocity[std::size_t(g)];
     for (const PairLists::Segment& s : group.segments) {
-      const std::span<const int> members = members_of(group.patches, s.patch);
+      const std::span<const int> members = group.patches.members(s.patch);
       const PairLists::Body& body = lists.bodies[std::size_t(s.body)];
-      const PatchLanes<Real> targets = lanes_of<Real>(group.points, members, body.centre);
+      const PatchLanes<Real> targets = lanes_of<Real>(group.points, members, body.centre + s.shift);
       LaneOf<Real> v[3] = {};
       residual(polynomials, records[std::size_t(s.level)][std::size_t(s.body)].data(), &group.sources[s.first], s.count,
                targets.x, v);
@@ -310,7 +167,7 @@ void add_all(const PairLists& lists, const KernelSplit& split, std::span<const F
       for (std::size_t first = 0; first < taken.targets.size(); first += lane_count<Real>) {
         const std::span<const int> members(taken.targets.begin() + std::ptrdiff_t(first),
                                            std::min<std::size_t>(lane_count<Real>, taken.targets.size() - first));
-        const PatchLanes<Real> targets = lanes_of<Real>(group.points, members, body.centre);
+        const PatchLanes<Real> targets = lanes_of<Real>(group.points, members, body.centre + taken.shift);
         LaneOf<Real> v[3] = {};
         smooth(polynomials, from.data(), all.data(), whole, targets.x, v);
         if (whole < count) smooth(polynomials, from.data(), rest, unrolled, targets.x, v);

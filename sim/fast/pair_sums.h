@@ -2,69 +2,9 @@
 // has put in where it does not belong.
 #pragma once
 
-#include "sim/fast/patches.h"
-
-#include "sim/core/types.h"
-
-#include <cstdint>
+#include "sim/fast/pair_lists.h"
 
 namespace sim {
-
-/// Sources of one body. The fine ones, if any, serve patches of targets that are nearer than `fine_within`.
-struct FastBody {
-  Points coarse, fine;
-  double fine_within = 0;
-};
-
-/// Strengths of one body at its points: S f + D Q without factors; `dual` may be empty.
-struct FastStrengths {
-  Points force;
-  Tensors dual;
-};
-
-struct FastGroup {
-  Points points;
-  int body = -1;  ///< whose points they are, which they do not see; -1: of none
-};
-
-/// Which pairs are summed; of one geometry.
-struct PairLists {
-  struct Level {
-    Patches patches;  ///< of a body's points
-    Points points;    ///< in their order, from the body's centre
-  };
-  struct Body {
-    Eigen::Vector3d centre;
-    std::array<Level, 2> levels;  ///< coarse, fine
-  };
-  /// Sources of a body that a patch of targets sees within the cut-off.
-  struct Segment {
-    int body, patch, level, count;
-    std::uint32_t lanes;  ///< those of the patch that see it
-    std::size_t first;    ///< in the group's list
-  };
-  /// Targets from which the smooth part of a body is taken.
-  struct Taken {
-    int body;
-    std::vector<int> targets;
-  };
-  struct Group {
-    Points points;
-    Patches patches;
-    std::vector<Segment> segments;
-    std::vector<std::uint16_t>
-        sources;  ///< places in the order of a level's patches; its end is a point of no strength
-    std::vector<Taken> taken;
-  };
-  bool single_precision = false;
-  std::vector<Body> bodies;
-  std::vector<Group> groups;
-  double pairs() const;  ///< evaluated in the residual part
-};
-
-/// Lengths in units of the cut-off. Bodies have at most 65535 points.
-PairLists plan_pairs(const std::vector<FastBody>&, const std::vector<FastGroup>&, const std::vector<Exclusion>&,
-                     bool single_precision);
 
 /// Adds the residual part and subtracts the smooth one of what is not seen. Strengths of coarse and of fine points;
 /// those of a body that has or needs no fine ones may be empty.

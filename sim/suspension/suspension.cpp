@@ -183,20 +183,20 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
                                  std::span<const Motion> guess, double tolerance, Preconditioner kind,
                                  std::span<const RigidMotion> frames) {
   const int n = int(s.membranes.size());
-  std::vector<Block> blocks;
-  std::vector<Vector> right, start;
-  std::vector<Coefficients> rigid;
+  std::vector<Block> blocks(n);
+  std::vector<Vector> right(n), start(n);
+  std::vector<Coefficients> rigid(n);
   // A rigid motion solves the homogeneous equations for itself: (39) maps it to itself and every other vesicle to
   // nothing.
-  for (int i = 0; i < n; ++i) {
+  parallel_for(n, [&](int i) {
     const Membrane& m = s.membranes[i];
-    blocks.push_back(vesicle_block(m, c, kind));
-    rigid.push_back(frames.empty() ? Coefficients{m.order(), Matrix::Zero(coefficient_count(m.order()), 3)}
-                                   : rigid_velocity(m.body, frames[i]));
-    right.push_back(system_right(m, {m.order(), forcing[i].values - rigid[i].values}));
-    start.push_back(packed({{m.order(), guess[i].velocity.values - rigid[i].values}, guess[i].tension}));
+    blocks[i] = vesicle_block(m, c, kind);
+    rigid[i] = frames.empty() ? Coefficients{m.order(), Matrix::Zero(coefficient_count(m.order()), 3)}
+                              : rigid_velocity(m.body, frames[i]);
+    right[i] = system_right(m, {m.order(), forcing[i].values - rigid[i].values});
+    start[i] = packed({{m.order(), guess[i].velocity.values - rigid[i].values}, guess[i].tension});
     if (m.pinned) start[i][start[i].size() - coefficient_count(m.order())] = 0;
-  }
+  });
   constexpr int most_iterations = 300;
   const GmresResult result = gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, y); },
                                    [&](const Vector& y) { return precondition_blocks(blocks, y); }, join(right),
