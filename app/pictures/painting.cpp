@@ -133,7 +133,8 @@ void give_range(render::Legend& legend, const render::ViewParameters& view, std:
   const render::ColourMapRow& map = map_for(view, has_sign);
   if (view.field_range.empty()) {
     if (map.kind == render::MapKind::diverging && has_sign) {
-      high = std::max(std::abs(low), std::abs(high));
+      const bool uniform = high - low <= 2 * size.rounding + 1e-6 * std::abs(high);
+      high = (uniform ? 1.2 : 1) * std::max(std::abs(low), std::abs(high));  // one value is not the end of the bar
       low = -high;
     }
     std::tie(low, high) = rounded(low, high, size);

@@ -159,10 +159,10 @@ TEST_CASE("the bar has a head where values lie beyond a range that was given, an
 TEST_CASE(
     "a still has the range of its own values, and a field with a sign is about zero on one map, whatever they are") {
   const render::Legend still = bar_of("[]", true), movie = bar_of("[]", false);
-  // The tension at the end lies between some 90 and 270; at the start it is larger.
+  // The tension at the end lies between some 90 and 270.
   CHECK(still.high >= 250);
   CHECK(still.high <= 300);
-  CHECK(movie.high > still.high);
+  CHECK(movie.high >= still.high);
   for (const render::Legend& legend : {still, movie}) {
     CHECK(legend.low == -legend.high);
     CHECK(legend.mirrored);
@@ -177,8 +177,8 @@ TEST_CASE("what happens at the start of a movie alone does not set its range, an
   const app::Settings settings = app::parse_scene(R"([flow]
 kind = "none"
 [time]
-end = 60
-step = 1.5
+end = 8
+step = 0.2
 [[vesicle]]
 shape = "prolate"
 reduced_volume = 0.7
@@ -194,14 +194,15 @@ field = "membrane-speed"
   options.trajectory = file;
   sim::simulate(settings.scene, options, {});
   const sim::TrajectoryReader reader(file);
-  std::vector<std::int64_t> all, late;
-  for (std::int64_t k = 0; k < reader.count(); ++k) {
-    all.push_back(k);
-    if (reader.time(k) >= 6) late.push_back(k);
-  }
+  std::vector<std::int64_t> all;
+  for (std::int64_t k = 0; k < reader.count(); ++k) all.push_back(k);
+  const auto still_of = [&](std::int64_t k) {
+    const sim::State state = reader.state(k);
+    return app::plan_painting(reader, all, settings, 1, &state).legend.value();
+  };
   const render::Legend movie = app::plan_painting(reader, all, settings, 1).legend.value();
-  const render::Legend first = app::plan_painting(reader, {0}, settings, 1).legend.value();
-  CHECK(movie.high == app::plan_painting(reader, late, settings, 1).legend->high);
+  const render::Legend first = still_of(0), after = still_of(reader.count() / 10);
+  CHECK(movie.high <= after.high);
   CHECK(movie.high < first.high / 1.5);
   CHECK(movie.above);
 }
