@@ -35,7 +35,7 @@ Cloud cloud(bool dual, double unit = 1, const Vec3& place = Vec3::Zero()) {
     for (int k = 0; k < points; ++k) {
       body.coarse.col(k) = unit * (place + centre + 0.5 * vector());
       strengths.force.col(k) = unit * vector();
-      if (dual) strengths.dual.col(k) << unit * unit * vector(), unit * unit * vector();
+      for (int row = 0; dual && row < 6; ++row) strengths.dual(row, k) = unit * unit * uniform(random);
     }
     c.groups.push_back({body.coarse, i});
     c.bodies.push_back(body);

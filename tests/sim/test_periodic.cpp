@@ -34,7 +34,7 @@ Lattice lattice() {
     for (int k = 0; k < points; ++k) {
       body.coarse.col(k) = centre + 0.5 * vector();
       s.force.col(k) = vector();
-      s.dual.col(k) << vector(), vector();
+      for (int row = 0; row < 6; ++row) s.dual(row, k) = uniform(random);
     }
     l.groups.push_back({body.coarse, i});
     l.bodies.push_back(body);
