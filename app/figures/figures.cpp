@@ -31,6 +31,14 @@ void add_series(render::FigureInput& input, const std::vector<FigureSource>& sou
     for (render::Series& series : series_of(source, scales, rows, false)) input.series.push_back(std::move(series));
 }
 
+/// That of a dark page, and white on all others.
+std::string ground_of_stills(const render::FigureParameters& parameters) {
+  const render::Theme theme = render::page_of(parameters).theme;
+  if (!theme.is_dark()) return "white";
+  const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(theme.ground.r), byte(theme.ground.g), byte(theme.ground.b));
+}
+
 void add_stills(render::FigureInput& input, const FigureSource& source, const Options& options) {
   Settings settings = source.settings;
   settings.view.supersampling = std::max(settings.view.supersampling, 3);
@@ -48,7 +56,7 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
                       .width = std::max(least, static_cast<int>(std::lround(p.width * pixels))),
                       .height = std::max(least, static_cast<int>(std::lround(p.height * pixels)))});
   }
-  DrawnStills drawn = draw_stills(source.trajectory, settings, stills, options);
+  DrawnStills drawn = draw_stills(source.trajectory, settings, ground_of_stills(input.parameters), stills, options);
   input.stills = std::move(drawn.images);
   input.field = std::move(drawn.legend);
 }

@@ -80,10 +80,10 @@ render::Image joined(const Production& production, const std::vector<render::Ima
 }
 
 /// The settings without anything that lies over the picture.
-Settings plain_settings(const Settings& settings) {
+Settings plain_settings(const Settings& settings, const std::string& background) {
   Settings plain = settings;
   plain.view.projection = "orthographic";
-  plain.view.background = "white";
+  plain.view.background = background;
   plain.view.flow_arrows = plain.view.time_stamp = plain.view.caption = plain.view.errors = plain.view.scale_bar =
       false;
   plain.view.title = plain.view.triad = plain.view.flow_profile = plain.view.inset = plain.view.colour_bar = false;
@@ -125,8 +125,8 @@ render::Image draw_picture(Studio& studio, const Production& production, double 
 }
 
 DrawnStills draw_stills(const sim::TrajectoryReader& trajectory, const Settings& settings,
-                        const std::vector<Still>& stills, const Options& options) {
-  const Settings plain = plain_settings(settings);
+                        const std::string& background, const std::vector<Still>& stills, const Options& options) {
+  const Settings plain = plain_settings(settings, background);
   Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, 1080);
   const double area = sim::measure(studio.plans, trajectory.state(0).vesicles.front(), 1, 1).area;
   const Painting painting =

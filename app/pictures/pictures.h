@@ -34,6 +34,8 @@ struct DrawnStills {
   std::vector<render::Image> images;
   std::optional<render::Legend> legend;  ///< of the field they show
 };
-DrawnStills draw_stills(const sim::TrajectoryReader&, const Settings&, const std::vector<Still>&, const Options&);
+/// background: as view.background.
+DrawnStills draw_stills(const sim::TrajectoryReader&, const Settings&, const std::string& background,
+                        const std::vector<Still>&, const Options&);
 
 }  // namespace app
