@@ -10,6 +10,7 @@
 //   CONTOUR     the inner edge of the outline; with GHOST and CUTAWAY the whole outline
 //   TRACERS     tracer dots
 //   SPARSE      with GRID: vesicles so small that their lines fade to a few, or to none
+//   OCCLUDED    hollows and neighbours darken it
 //   DEPTH_CUE   fades into the ground with the distance
 in vec3 v_eye, v_normal, v_label;
 flat in vec3 v_paint;  // linear
@@ -30,6 +31,9 @@ flat in float v_contour_share;
 #endif
 #if defined(TRACERS) || defined(SPARSE)
 flat in vec4 v_detail;
+#endif
+#ifdef OCCLUDED
+in vec2 v_light;
 #endif
 #ifdef DEPTH_CUE
 in float v_near;
@@ -164,10 +168,12 @@ void main() {
   // change of r across one sample, from the derivatives of the position: those of r jump between dots
   float sample_size = max(length(vec2(dot(dFdx(v_eye), away), dot(dFdy(v_eye), away))) / r, 1e-9);
   float shown = bright < 0.0 ? 0.0 : v_detail.w, radius = v_detail.z;
-  float ring = shown * (1.0 - smoothstep(-0.6, 0.6, (r - radius) / sample_size));
-  float core = shown * (1.0 - smoothstep(-0.6, 0.6, (r - (bright > 0.5 ? 0.78 : 0.66) * radius) / sample_size));
-  albedo = mix(albedo, bright > 0.5 ? u_tracer_dark : vec3(0.95), ring);  // the marked one is told apart in grey, too
-  albedo = mix(albedo, bright > 0.5 ? u_tracer_bright : u_tracer_dark, core);
+  // Flat marks: dark ones whole, bright ones with a dark edge, so that both are told apart in grey. No pupils.
+  bool is_bright = bright > 0.5;
+  float core = shown * (1.0 - smoothstep(-0.6, 0.6, (r - (is_bright ? 0.66 : 0.62) * radius) / sample_size));
+  float ring = is_bright ? shown * (1.0 - smoothstep(-0.6, 0.6, (r - 0.80 * radius) / sample_size)) : core;
+  albedo = mix(albedo, u_tracer_dark, ring);
+  if (is_bright) albedo = mix(albedo, u_tracer_bright, core);
   gloss = mix(gloss, 0.45, ring);
 #ifdef GHOST
   alpha = mix(alpha, max(alpha, drawn), ring);
@@ -183,7 +189,12 @@ void main() {
 #elif defined(FLAT)
   vec3 colour = encode(albedo);
 #else
-  vec3 colour = encode(lit(albedo, n, v, gloss));
+#ifdef OCCLUDED
+  vec2 light = clamp(v_light, 0.0, 1.0);
+#else
+  const vec2 light = vec2(1.0);
+#endif
+  vec3 colour = encode(lit(albedo, n, v, gloss, light));
 #endif
 
 #ifdef CONTOUR

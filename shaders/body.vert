@@ -29,6 +29,10 @@ layout(location = 9) in float a_from_contour;  // samples along the membrane, as
 out float v_from_contour;
 flat out float v_contour_share;
 #endif
+#ifdef OCCLUDED
+layout(location = 11) in vec2 a_light;  // shares of sky and key light that come here
+out vec2 v_light;
+#endif
 uniform mat4 u_view, u_projection;
 out vec3 v_eye;     // position in eye space
 out vec3 v_normal;  // eye space
@@ -61,6 +65,9 @@ void main() {
 #if defined(CONTOUR) && (defined(GHOST) || defined(CUTAWAY))
   v_from_contour = a_from_contour;
   v_contour_share = a_paint.w;
+#endif
+#ifdef OCCLUDED
+  v_light = a_light;
 #endif
 #ifdef DEPTH_CUE
   v_near = near_share(eye.z);

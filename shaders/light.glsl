@@ -10,17 +10,18 @@ vec3 encode(vec3 c) {
   return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 }
 
-// albedo: linear; n, v: unit vectors in eye space, v toward the eye; gloss 0..1 scales the highlights.
-vec3 lit(vec3 albedo, vec3 n, vec3 v, float gloss) {
-  float ambient = mix(0.32, 0.55, 0.5 + 0.5 * n.y);
+// albedo: linear; n, v: unit vectors in eye space, v toward the eye; gloss 0..1 scales the highlights; open: shares of
+// sky and key light that nothing hides.
+vec3 lit(vec3 albedo, vec3 n, vec3 v, float gloss, vec2 open) {
+  float ambient = open.x * mix(0.32, 0.55, 0.5 + 0.5 * n.y);
   float lambert = dot(n, key_direction);
   float half_lambert = 0.5 + 0.5 * lambert;
-  float key = 0.58 * mix(max(lambert, 0.0), half_lambert * half_lambert, 0.6);
+  float key = 0.58 * open.y * mix(max(lambert, 0.0), half_lambert * half_lambert, 0.6);
   float fill = 0.08 * max(dot(n, fill_direction), 0.0);
   vec3 colour = albedo * (ambient + key + fill);
   float shine = max(dot(n, normalize(key_direction + v)), 0.0);
-  colour += gloss * (0.16 * pow(shine, 50.0) + 0.04 * pow(shine, 10.0));
+  colour += gloss * open.y * (0.16 * pow(shine, 50.0) + 0.04 * pow(shine, 10.0));
   float grazing = 1.0 - max(dot(n, v), 0.0);
-  colour += albedo * (0.22 * grazing * grazing * grazing);
+  colour += albedo * (open.x * 0.22 * grazing * grazing * grazing);
   return colour;
 }

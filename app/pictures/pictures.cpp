@@ -8,6 +8,7 @@
 #include "render/overlay/panels.h"
 #include "render/scene/cutaway.h"
 #include "render/scene/hidden.h"
+#include "render/scene/occlusion.h"
 #include "sim/measures/diagnostics.h"
 
 #include <algorithm>
@@ -28,6 +29,9 @@ std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const si
   std::vector<bool> hidden(sketches.size(), false);
   if (!style.see_through && !style.cut && sketches.size() > 2) hidden = render::hidden(sketches, camera, p.view);
   const sim::Vec3 plane = sim::Vec3(centre.x, centre.y, centre.z) + p.view.cut_offset * p.view.cut_normal.normalized();
+  std::vector<render::Occluder> occluders;
+  if (style.occluded && p.view.occlusion > 0)
+    for (const render::Sketch& sketch : sketches) occluders.push_back(render::occluder_of(sketch));
   std::vector<render::Body> bodies;
   sim::Surroundings surroundings;
   for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
@@ -42,6 +46,7 @@ std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const si
         render::make_mesh(full ? studio.meshes.finest() : studio.meshes.choose(sketch, vesicle.position.order, pixels),
                           vesicle, field ? &*field : nullptr);
     body.colour = p.painting.bodies[v];
+    if (!occluders.empty()) render::shade(body.mesh, v, sketches, occluders, camera, body.mesh.area_radius * pixels);
     if (style.cut)
       body.cut = p.view.cut == "common" ? render::make_cut_at(vesicle.position, p.view.cut_normal, plane)
                                         : render::make_cut(vesicle.position, p.view.cut_normal, p.view.cut_offset);

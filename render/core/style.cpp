@@ -11,10 +11,11 @@ namespace render {
 
 const std::vector<StyleRow>& styles() {
   static const std::vector<StyleRow> rows{
-      {"opaque", "solid membranes with grid lines and tracer dots", "", true, true, true},
-      {"plain", "solid membranes, tracer dots, no lines", "", false, true, true},
-      {"checker", "patches two spacings of the grid wide", "CHECKER", false, false, true},
-      {"meridian", "grid lines with one meridian and the equator in red", "MARKS", true, false, true},
+      {"opaque", "solid membranes with grid lines and tracer dots", "", true, true, true, false, false, false, true},
+      {"plain", "solid membranes, tracer dots, no lines", "", false, true, true, false, false, false, true},
+      {"checker", "patches two spacings of the grid wide", "CHECKER", false, false, true, false, false, false, true},
+      {"meridian", "grid lines with one meridian and the equator in red", "MARKS", true, false, true, false, false,
+       false, true},
       {"outline", "white membranes with lines and contours only, for print", "FLAT", true, true, false},
       {"ghost", "see-through membranes, lines of the far side visible", "GHOST", true, true, true, true},
       {"field", "a scalar on the membrane, to be read off a colour bar", "FIELD", true, false, true, false, true},
@@ -39,7 +40,7 @@ Colour sign_dot_colour(const Colour& c) {
 double sign_dot_spacing(int height) { return std::max(SignDots::spacing * height / 1080, SignDots::least); }
 
 std::string body_defines(const StyleRow& style, const ViewParameters& view, bool grid, bool sparse, bool tracers,
-                         bool sign_dots) {
+                         bool sign_dots, bool occluded) {
   std::string text;
   std::istringstream words{std::string(style.defines)};
   for (std::string word; words >> word;) text += "#define " + word + "\n";
@@ -64,6 +65,7 @@ std::string body_defines(const StyleRow& style, const ViewParameters& view, bool
   if (style.field && sign_dots)
     text += fmt::format("#define SIGN_DOTS\n#define DOT_RADIUS {}\n#define DOT_FULL {}\n", SignDots::radius,
                         SignDots::full);
+  if (occluded) text += "#define OCCLUDED\n";
   if (view.outline_width > 0) text += "#define CONTOUR\n";
   if (style.tracers && view.tracers && tracers) text += "#define TRACERS\n";
   return text;

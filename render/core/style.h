@@ -18,6 +18,7 @@ struct StyleRow {
   bool see_through = false;  ///< drawn in order of depth, back faces too
   bool field = false;        ///< painted by Mesh::scalar on Frame::legend
   bool cut = false;          ///< opened by Body::cut
+  bool occluded = false;     ///< hollows and neighbours darken it
 };
 const std::vector<StyleRow>& styles();
 /// Throws std::invalid_argument that names the nearest known style.
@@ -37,6 +38,6 @@ Colour sign_dot_colour(const Colour& under);
 
 /// The #define lines of body.frag for this view; `sparse`: lines that fade to a few, `sign_dots` on a field.
 std::string body_defines(const StyleRow& style, const ViewParameters& view, bool grid, bool sparse, bool tracers,
-                         bool sign_dots = false);
+                         bool sign_dots = false, bool occluded = false);
 
 }  // namespace render

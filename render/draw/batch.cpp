@@ -55,7 +55,8 @@ Variant variant_of(const Frame& frame, const Body& body, const Detail& detail) {
   return {.grid = detail.lines > 0 || detail.few_lines > 0,
           .sparse = detail.lines < 1,
           .tracers = style.tracers && frame.view.tracers && !body.mesh.tracers.empty() && detail.tracers > 0,
-          .sign_dots = style.field && frame.legend && frame.legend->mirrored && frame.view.sign_dots};
+          .sign_dots = style.field && frame.legend && frame.legend->mirrored && frame.view.sign_dots,
+          .occluded = style.occluded && !body.mesh.light.empty()};
 }
 
 Colour outline_colour(const Frame& frame, const Body& body) {
@@ -90,6 +91,12 @@ void append(Batch& batch, const Frame& frame, const Body& body, const Detail& de
       const double width = detail.outline * samples(frame.view, frame.view.outline_width, 1.0);
       extend(batch.from_contour, contour_distances(mesh, camera, samples_high / 2.0, width + 6));
     }
+  }
+  if (variant.occluded) {
+    // Stronger than in nature, where light that membranes throw at each other fills shallow hollows less than eyes
+    // expect of a drawing.
+    const auto strength = static_cast<float>(0.75 * frame.view.occlusion);
+    for (const glm::vec2& open : mesh.light) batch.light.push_back(1.0F - strength * (1.0F - open * open * open));
   }
   if (!with_triangles) return;
   for (const std::uint32_t k : mesh.plan->indices()) batch.indices.push_back(first + k);

@@ -21,6 +21,7 @@ struct Batch {
   std::vector<glm::vec4> cut;                      ///< half space that is taken away
   std::vector<float> from_contour;                 ///< samples
   std::vector<glm::vec3> contour;                  ///< sRGB
+  std::vector<glm::vec2> light;                    ///< shares of sky and key light
   std::vector<std::uint32_t> indices;              ///< three a triangle
 };
 
@@ -30,6 +31,7 @@ struct Variant {
   bool sparse = false;  ///< lines that fade to a few
   bool tracers = true;
   bool sign_dots = false;
+  bool occluded = false;
   friend auto operator<=>(const Variant&, const Variant&) = default;
 };
 Variant variant_of(const Frame& frame, const Body& body, const Detail& detail);

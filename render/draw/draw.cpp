@@ -5,6 +5,7 @@
 #include "render/core/places.h"
 #include "render/core/style.h"
 #include "render/draw/arrow_shape.h"
+#include "render/draw/clearance.h"
 #include "render/draw/draw_values.h"
 #include "render/overlay/layout.h"
 
@@ -16,53 +17,6 @@ namespace render {
 namespace {
 
 constexpr double weakest_arrow = 0.10;  // of the longest; shorter ones are left out
-
-// A membrane as the picture shows it: points in half heights of the picture, dense enough for distances to them, and a
-// circle round them.
-struct Shadow {
-  std::vector<glm::dvec2> points;
-  glm::dvec2 centre{0};
-  double radius = 0;
-};
-
-std::vector<Shadow> shadows(const Frame& frame) {
-  std::vector<Shadow> all;
-  for (const Body& body : frame.bodies) {
-    Shadow& shadow = all.emplace_back();
-    const int stride = body.mesh.plan->latitudes() > 64 ? 2 : 1;  // of the mesh: 48 x 96 points of a large body
-    const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
-    for (int j = 0; j < columns; j += stride)
-      for (int i = 0; i < rings; i += stride) {
-        const int point = j * rings + i;
-        const glm::dvec2 place = frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(point)]);
-        shadow.points.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
-        shadow.centre += shadow.points.back();
-      }
-    shadow.centre /= static_cast<double>(shadow.points.size());
-    for (const glm::dvec2& p : shadow.points) shadow.radius = std::max(shadow.radius, glm::distance(p, shadow.centre));
-  }
-  return all;
-}
-
-// 0 when the segment touches a membrane's shadow, 1 when it is well away: half an arrow beside a contour looks like
-// something that belongs to the vesicle.
-double clear_of_bodies(const std::vector<Shadow>& shadows, const glm::dvec2& tail, const glm::dvec2& tip) {
-  constexpr double near = 0.03, far = 0.055;  // half heights
-  const glm::dvec2 along = tip - tail;
-  const double length2 = std::max(glm::dot(along, along), 1e-12);
-  const auto away_from = [&](const glm::dvec2& p) {
-    return p - tail - along * std::clamp(glm::dot(p - tail, along) / length2, 0.0, 1.0);
-  };
-  double nearest2 = far * far;
-  for (const Shadow& shadow : shadows) {
-    if (glm::length(away_from(shadow.centre)) > shadow.radius + far) continue;
-    for (const glm::dvec2& p : shadow.points) {
-      const glm::dvec2 away = away_from(p);
-      nearest2 = std::min(nearest2, glm::dot(away, away));
-    }
-  }
-  return glm::smoothstep(near, far, std::sqrt(nearest2));
-}
 
 void check(const ViewParameters& view) {
   if (view.size.size() != 2 || view.size[0] < 1 || view.size[1] < 1)
@@ -171,6 +125,7 @@ void Renderer::draw_arrows(const Frame& frame) {
   const std::vector<Box> overlays = lay_out(frame, font_).boxes();
   std::vector<glm::vec4> starts;
   std::vector<glm::vec3> vectors;
+  std::vector<EndOn> end_on;
   for (Eigen::Index i = 0; i < flow.points.rows(); ++i) {
     const glm::dvec3 v = rests ? glm::dvec3(0) : to_glm(flow.velocities.row(i)) / fastest;
     const glm::dvec3 middle = to_glm(flow.points.row(i)), arrow = v * longest_arrow * camera.half_height;
@@ -183,10 +138,22 @@ void Renderer::draw_arrows(const Frame& frame) {
     const double shown =
         flow.shown * beside * clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
     if (shown <= 0) continue;
+    if (!rests) {
+      // Along the line of sight an arrow is a blot: there a ring with a dot or a cross takes its place.
+      const glm::dvec3 sight = camera.perspective ? camera.eye - middle : camera.eye - camera.target;
+      const double along = glm::dot(arrow, sight) / (glm::length(arrow) * glm::length(sight));
+      const double as_ring = glm::smoothstep(0.94, 0.96, std::abs(along));
+      if (as_ring > 0)
+        end_on.push_back({middle, 0.16 * glm::length(arrow), along > 0, static_cast<float>(shown * as_ring)});
+      if (as_ring >= 1) continue;
+      starts.emplace_back(glm::vec3(camera.place(middle)), shown * (1 - as_ring));
+      vectors.emplace_back(arrow / camera.half_height);
+      continue;
+    }
     starts.emplace_back(glm::vec3(camera.place(middle)), shown);
     vectors.emplace_back(arrow / camera.half_height);
   }
-  if (starts.empty()) return;
+  if (starts.empty()) return draw_end_on(frame, end_on);
   const Gl& gl = context_.gl();
   const Program& p = program("arrow", rests ? "#define BEAD\n" : "");
   p.use();
@@ -203,6 +170,7 @@ void Renderer::draw_arrows(const Frame& frame) {
                          static_cast<GLsizei>(starts.size()));
   gl.Clear(
       GL_DEPTH_BUFFER_BIT);  // arrows stand behind everything, though the plane they show goes through the vesicles
+  draw_end_on(frame, end_on);
 }
 
 Image Renderer::finish(const Frame& frame) {

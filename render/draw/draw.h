@@ -36,8 +36,18 @@ class Renderer {
   void draw_ghosts(const Frame&);
   void draw_cut_edges(const Frame&);
   void draw_flow_lines(const Frame&);
+  /// An arrow of the flow along the line of sight.
+  struct EndOn {
+    glm::dvec3 place;
+    double radius;  ///< lengths of the scene
+    bool toward;    ///< the viewer
+    float shown;    ///< 0 faded into the ground .. 1
+  };
+  void draw_end_on(const Frame&, const std::vector<EndOn>&);
   /// A strip along the points in the picture, `reach` samples to both sides, moved towards the eye by `nearer`.
-  void draw_ribbon(const Camera&, std::span<const glm::dvec3> points, bool closed, float reach, double nearer);
+  /// shown: 0 faded .. 1, one a point; empty: 1.
+  void draw_ribbon(const Camera&, std::span<const glm::dvec3> points, bool closed, float reach, double nearer,
+                   std::span<const float> shown = {});
   void start_blending();
   /// A program for membranes, in use, with the camera and what fades them set.
   const Program& use_for_bodies(const std::string& name, const Frame&, const std::string& defines);

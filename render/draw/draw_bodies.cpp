@@ -57,12 +57,14 @@ void Renderer::upload(const Batch& batch) {
   if (!batch.cut.empty()) bodies_.attribute(8, batch.cut);
   if (!batch.from_contour.empty()) bodies_.attribute(9, batch.from_contour);
   if (!batch.contour.empty()) bodies_.attribute(10, batch.contour);
+  if (!batch.light.empty()) bodies_.attribute(11, batch.light);
 }
 
 void Renderer::draw_batch(const Frame& frame, const Batch& batch, const Variant& variant) {
   const StyleRow& style = find_style(frame.view.style);
-  const Program& p = use_for_bodies(
-      "body", frame, body_defines(style, frame.view, variant.grid, variant.sparse, variant.tracers, variant.sign_dots));
+  const Program& p = use_for_bodies("body", frame,
+                                    body_defines(style, frame.view, variant.grid, variant.sparse, variant.tracers,
+                                                 variant.sign_dots, variant.occluded));
   if (style.field) {
     palette_.bind();
     p.set("u_map", 0);
@@ -160,94 +162,6 @@ void Renderer::draw_outlines(const Frame& frame) {
   gl.DepthMask(GL_TRUE);
   gl.Disable(GL_BLEND);
   gl.CullFace(GL_BACK);
-}
-
-void Renderer::draw_ribbon(const Camera& camera, std::span<const glm::dvec3> points, bool closed, float reach,
-                           double nearer) {
-  const glm::dvec2 sample(2.0 / framebuffer_->width(), 2.0 / framebuffer_->height());  // clip units
-  const std::size_t n = points.size();
-  if (n < 2) return;
-  std::vector<glm::dvec4> clips;
-  for (const glm::dvec3& point : points) {
-    glm::dvec4 eye = glm::dmat4(camera.view) * glm::dvec4(camera.place(point), 1);
-    eye.z += nearer / camera.half_height;
-    clips.push_back(glm::dmat4(camera.projection) * eye);
-  }
-  std::vector<glm::vec4> strip;
-  std::vector<float> across;
-  for (std::size_t k = 0; k < n + closed; ++k) {
-    const glm::dvec4 &here = clips[k % n], &before = clips[k > 0 || closed ? (k + n - 1) % n : 0],
-                     &after = clips[k + 1 < n || closed ? (k + 1) % n : n - 1];
-    const glm::dvec2 along = (glm::dvec2(after) / after.w - glm::dvec2(before) / before.w) / sample;
-    const glm::dvec2 side = glm::dvec2(-along.y, along.x) / std::max(glm::length(along), 1e-9) * sample * here.w;
-    for (const float sign : {-1.0F, 1.0F}) {
-      strip.emplace_back(glm::dvec2(here) + static_cast<double>(sign * reach) * side, here.z, here.w);
-      across.push_back(sign * reach);
-    }
-  }
-  ribbons_.attribute(0, strip);
-  ribbons_.attribute(1, across);
-  context_.gl().DrawArrays(GL_TRIANGLE_STRIP, 0, static_cast<GLsizei>(strip.size()));
-}
-
-void Renderer::draw_flow_lines(const Frame& frame) {
-  if (frame.flow_lines.lines.empty()) return;
-  const Gl& gl = context_.gl();
-  const Program& p = program("ribbon", "");
-  const float half_width = samples(frame.view, 1.1, 0.4);
-  const double head = 0.034 * frame.camera.half_height;
-  p.use();
-  p.set("u_core", -2.0F);
-  p.set("u_half_width", half_width);
-  p.set("u_rim", vector_of(inks_on(ground_of(frame.view.background)).flow_line));
-  start_blending();
-  gl.DepthMask(GL_FALSE);
-  gl.Disable(GL_CULL_FACE);
-  const glm::dvec3 toward = glm::normalize(frame.camera.eye - frame.camera.target);
-  for (const FlowLines::Line& line : frame.flow_lines.lines) {
-    draw_ribbon(frame.camera, line.points, line.closed, half_width + 1, 0);
-    for (const std::size_t k : line.heads) {
-      if (k == 0 || k + 1 >= line.points.size()) continue;
-      const glm::dvec3 along = glm::normalize(line.points[k + 1] - line.points[k - 1]),
-                       side = glm::cross(toward, along);
-      std::vector<glm::vec4> corners;
-      for (const glm::dvec3& corner :
-           {line.points[k] - 0.5 * head * along + 0.36 * head * side,
-            line.points[k] - 0.5 * head * along - 0.36 * head * side, line.points[k] + 0.5 * head * along})
-        corners.emplace_back(frame.camera.clip(corner));
-      ribbons_.attribute(0, corners);
-      ribbons_.attribute(1, std::vector<float>(3, 0.0F));
-      gl.DrawArrays(GL_TRIANGLES, 0, 3);
-    }
-  }
-  gl.Enable(GL_CULL_FACE);
-  gl.DepthMask(GL_TRUE);
-  gl.Disable(GL_BLEND);
-}
-
-// The rims that the plane leaves: a bright core between two dark lines, like the membrane's thickness under a lens.
-void Renderer::draw_cut_edges(const Frame& frame) {
-  const Gl& gl = context_.gl();
-  const Program& p = program("ribbon", "");
-  const float line = samples(frame.view, std::max(frame.view.outline_width, 1.6), 1.0);
-  const float core = 0.9F * line, half_width = core + 0.9F * line;
-  p.use();
-  p.set("u_core", core);
-  p.set("u_half_width", half_width);
-  start_blending();
-  gl.DepthMask(GL_FALSE);
-  gl.Disable(GL_CULL_FACE);
-  for (const Body& body : frame.bodies) {
-    if (!body.cut) continue;
-    p.set("u_colour", vector_of({0.5 + 0.5 * body.colour.r, 0.5 + 0.5 * body.colour.g, 0.5 + 0.5 * body.colour.b}));
-    p.set("u_rim", vector_of(outline_colour(frame, body)));
-    for (const std::vector<glm::dvec3>& edge : body.cut->edges) {
-      draw_ribbon(frame.camera, edge, true, half_width + 1, 0.004 * body.mesh.area_radius);
-    }
-  }
-  gl.Enable(GL_CULL_FACE);
-  gl.DepthMask(GL_TRUE);
-  gl.Disable(GL_BLEND);
 }
 
 void Renderer::draw_bodies(const Frame& frame) {

@@ -54,7 +54,7 @@ class VertexArray {
 
  private:
   void upload(GLuint location, int components, std::span<const std::byte> data, GLuint divisor);
-  static constexpr std::size_t attributes = 11;
+  static constexpr std::size_t attributes = 12;
   const Gl* gl_;
   GLuint id_ = 0, index_buffer_ = 0;
   std::array<GLuint, attributes> buffers_{};

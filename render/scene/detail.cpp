@@ -57,6 +57,8 @@ Sketch sketch_of(const sim::VesicleState& state) {
     sketch.radius = std::max(sketch.radius, glm::distance(to_glm(x.value.row(k)), sketch.centre));
     const glm::dvec3 n = glm::cross(to_glm(x.t.row(k)), to_glm(x.f.row(k)));
     const double length = glm::length(n);
+    constexpr double step = std::numbers::pi / Sketch::latitudes;  // of both angles
+    sketch.areas.push_back(k % (Sketch::latitudes + 1) % Sketch::latitudes == 0 ? glm::dvec3(0) : n * (step * step));
     normals.push_back(length > 0 ? n / length : glm::dvec3(0));
   }
   const auto edge = [&](Eigen::Index a, Eigen::Index b) {

@@ -30,9 +30,10 @@ double depth_cue_of(const ViewParameters& view, std::size_t vesicles);
 struct Sketch {
   static constexpr int latitudes = 12, longitudes = 24;
   std::vector<glm::dvec3> points;
-  glm::dvec3 centre{0};  ///< mean of a coarse mesh
-  double radius = 0;     ///< the ball about it holds the vesicle
-  double sagitta = 0;    ///< largest of an edge
+  std::vector<glm::dvec3> areas;  ///< outward normals times the area that a point stands for; none for poles
+  glm::dvec3 centre{0};           ///< mean of a coarse mesh
+  double radius = 0;              ///< the ball about it holds the vesicle
+  double sagitta = 0;             ///< largest of an edge
 };
 Sketch sketch_of(const sim::VesicleState& state);
 

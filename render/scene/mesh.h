@@ -44,6 +44,7 @@ struct Mesh {
   std::vector<glm::vec3> normal;     ///< outward unit vectors
   std::vector<glm::vec3> label;      ///< material label, unit vectors
   std::vector<double> scalar;        ///< for fields
+  std::vector<glm::vec2> light;      ///< shares of sky and key light that reach a vertex; empty: all
   double area_radius = 0;            ///< of the sphere of the same area
   struct Tracer {
     glm::dvec3 position;

@@ -1,0 +1,45 @@
+#include "render/draw/clearance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace render {
+
+std::vector<Shadow> shadows(const Frame& frame) {
+  std::vector<Shadow> all;
+  for (const Body& body : frame.bodies) {
+    Shadow& shadow = all.emplace_back();
+    const int stride = body.mesh.plan->latitudes() > 64 ? 2 : 1;  // of the mesh: 48 x 96 points of a large body
+    const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
+    for (int j = 0; j < columns; j += stride)
+      for (int i = 0; i < rings; i += stride) {
+        const int point = j * rings + i;
+        const glm::dvec2 place = frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(point)]);
+        shadow.points.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
+        shadow.centre += shadow.points.back();
+      }
+    shadow.centre /= static_cast<double>(shadow.points.size());
+    for (const glm::dvec2& p : shadow.points) shadow.radius = std::max(shadow.radius, glm::distance(p, shadow.centre));
+  }
+  return all;
+}
+
+double clear_of_bodies(const std::vector<Shadow>& shadows, const glm::dvec2& tail, const glm::dvec2& tip) {
+  constexpr double near = 0.03, far = 0.055;  // half heights
+  const glm::dvec2 along = tip - tail;
+  const double length2 = std::max(glm::dot(along, along), 1e-12);
+  const auto away_from = [&](const glm::dvec2& p) {
+    return p - tail - along * std::clamp(glm::dot(p - tail, along) / length2, 0.0, 1.0);
+  };
+  double nearest2 = far * far;
+  for (const Shadow& shadow : shadows) {
+    if (glm::length(away_from(shadow.centre)) > shadow.radius + far) continue;
+    for (const glm::dvec2& p : shadow.points) {
+      const glm::dvec2 away = away_from(p);
+      nearest2 = std::min(nearest2, glm::dot(away, away));
+    }
+  }
+  return glm::smoothstep(near, far, std::sqrt(nearest2));
+}
+
+}  // namespace render
