@@ -12,12 +12,14 @@
 #include "page_files.h"
 
 #include "render/core/assets.h"
+#include "render/core/ground.h"
 #include "render/core/paint.h"
 #include "render/core/places.h"
 #include "render/core/style.h"
 #include "render/draw/arrow_shape.h"
 #include "render/image/text.h"
 #include "render/overlay/colour_bar.h"
+#include "render/scene/detail.h"
 #include "sim/measures/diagnostics.h"
 
 #include <fmt/format.h>
@@ -131,7 +133,7 @@ class Recorder {
   }
 
   /// Everything that the page knows of the trajectory; `bytes` are the series, as the rows below count them.
-  void write(Members& page, const render::Ground& ground) const {
+  void write(Members& page) const {
     std::string bytes;
     const auto series = [&](const PageSeries& s) {
       bytes += s.bytes();
@@ -143,8 +145,9 @@ class Recorder {
       const render::Colour& own = panel_.painting.bodies[v];
       Members m;
       m.vector("colour", render::linear(own));
+      const render::Ground ground = render::ground_of(panel_.view.background);
       m.vector("contour", render::vector_of(render::outline_colour(own, ground, false)));
-      m.vector("soft_contour", render::vector_of(render::outline_colour(own, ground, true)));
+      m.vector("ghost_contour", render::vector_of(render::outline_colour(own, ground, true)));
       m.number("radius", radii_[v]);
       m.raw("breaks", fmt::format("[{}]", fmt::join(s.breaks, ",")));
       m.raw("position", series(s.position));
@@ -241,9 +244,8 @@ void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
     style.text("name", row.name);
     style.text("meaning", row.meaning);
     const bool dots = row.field && panel.painting.legend->mirrored && panel.view.sign_dots;
-    const bool marked = row.tracers && panel.view.tracers && tracers > 0;
-    style.text("defines", render::body_defines(row, panel.view, true, false, marked, dots));
-    style.flag("tracers", marked);
+    style.text("defines", render::body_defines(row, panel.view, true, false, tracers > 0, dots));
+    style.flag("tracers", row.tracers && panel.view.tracers && tracers > 0);
     style.flag("own_colour", row.own_colour);
     style.flag("see_through", row.see_through);
     style.flag("field", row.field);
@@ -252,7 +254,8 @@ void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
   page.raw("styles", list_of(styles));
 }
 
-void write_shaders(Members& page) {
+/// fades: far ones into the ground.
+void write_shaders(Members& page, bool fades) {
   Members files, libraries;
   std::set<std::string> names;
   for (const std::string program : {"ground", "body", "outline", "arrow"})
@@ -263,6 +266,7 @@ void write_shaders(Members& page) {
       names.insert(file);
     }
   for (const std::string& name : names) files.text(name, render::shader_text(name, {}));
+  page.text("defines", fades ? "#define DEPTH_CUE\n" : "");
   page.raw("shaders", files.whole());
   page.raw("libraries", libraries.whole());
   const render::ArrowShape arrow = render::arrow_shape();
@@ -273,11 +277,13 @@ void write_shaders(Members& page) {
 }
 
 /// What the passes of draw_frame() set.
-void write_paint(Members& page, const render::ViewParameters& view) {
+void write_paint(Members& page, const render::ViewParameters& view, double cue) {
   Members paint;
   const render::Ground ground = render::ground_of(view.background);
   paint.vector("top", render::vector_of(ground.top));
   paint.vector("bottom", render::vector_of(ground.bottom));
+  paint.flag("dark", ground.dark());
+  paint.number("depth_cue", cue);
   paint.vector("arrow", render::linear(render::inks_on(ground).arrow));
   paint.vector("line_ink", render::line_ink);
   paint.vector("tracer_bright", render::linear(render::tracer_bright));
@@ -359,11 +365,12 @@ std::string page_text(const sim::TrajectoryReader& trajectory, const Settings& s
   page.text("style", settings.view.style);
   page.number("seconds", static_cast<double>(std::max<std::int64_t>(frames - 1, 1)) / settings.movie.frame_rate);
   write_camera(page, panel, times.front());
-  write_paint(page, panel.view);
+  const double cue = render::depth_cue_of(panel.view, first.vesicles.size());
+  write_paint(page, panel.view, cue);
   write_styles(page, panel, tracers);
   write_legend(page, panel);
-  write_shaders(page);
-  recorder.write(page, render::ground_of(panel.view.background));
+  write_shaders(page, cue > 0);
+  recorder.write(page);
   std::string data;
   for (const char c : page.whole())
     data += c == '<' ? "\\u003c" : std::string(1, c);  // so that no text ends the script

@@ -1,5 +1,7 @@
 #include "render/figures/theme.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <stdexcept>
 
@@ -75,8 +77,8 @@ Theme on_ground_named(Theme theme, std::string_view ground) {
   }
   if (ground.starts_with('#')) return with_ground(theme, parse_colour(ground));
   const std::vector<std::string_view> known{"theme", "white", "dark", "transparent"};
-  throw std::invalid_argument("'" + std::string(ground) + "' is no ground of a figure" +
-                              sim::suggestion(ground, known) + ", and not #rrggbb");
+  throw std::invalid_argument(
+      fmt::format("'{}' is no ground of a figure{}, and not #rrggbb", ground, sim::suggestion(ground, known)));
 }
 
 Colour on_ground(const Theme& theme, const Colour& c) {

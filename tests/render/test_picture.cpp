@@ -199,7 +199,8 @@ TEST_CASE("tracer dots are round on a sphere, in the two colours, and only on th
       xx += dx * dx;
       zz += dz * dz;
     }
-  CHECK(count / (px * px) == Approx(std::numbers::pi * 0.088 * 0.088).epsilon(0.06));
+  const double radius = 0.62 * 0.088;  // of a dark dot
+  CHECK(count / (px * px) == Approx(std::numbers::pi * radius * radius).epsilon(0.06));
   CHECK(cx / count == Approx(0).margin(2e-3));
   CHECK(cz / count == Approx(0).margin(2e-3));
   CHECK(xx / zz == Approx(1).epsilon(0.02));

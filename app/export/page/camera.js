@@ -73,7 +73,7 @@ class Camera {
       projection[14] = -(f + n) / (f - n);
       projection[15] = 1;
     }
-    return { view, projection, unit: half, fit, perspective: home.perspective };
+    return { view, projection, unit: half, fit, distance, depth: home.depth, perspective: home.perspective };
   }
 }
 

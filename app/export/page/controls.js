@@ -42,6 +42,7 @@ class Controls {
         option.title = row.meaning;
         select.append(option);
       }
+    document.body.classList.toggle("dark", page.paint.dark);
     if (!page.styles.some(s => s.name === this.style)) this.style = page.styles[0].name;
     if (!page.legend) return;
     const picture = element.bar.querySelector("canvas").getContext("2d"), colours = bytesOf(page.legend.colours);

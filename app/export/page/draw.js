@@ -10,20 +10,15 @@ class Scene {
     this.mesh = new Mesh(Math.min(96, Math.max(16, 2 * Math.floor(Math.sqrt(mostVertices / count / 2) / 2))));
     const vertices = this.mesh.vertices * count;
     const array = size => new Float32Array(size * vertices);
-    this.arrays = { position: array(3), normal: array(3), label: array(3), dots: array(2), scalar: array(1) };
+    this.arrays = { position: array(3), normal: array(3), label: array(3), dot: array(4), next: array(4), paint: array(4),
+                    detail: array(4), scalar: array(1), contour: array(3), outline: array(4) };
+    this.nearest = new Float32Array(2 * vertices);
     this.slopes = { theta: new Float32Array(3 * this.mesh.vertices), phi: new Float32Array(3 * this.mesh.vertices) };
-    this.places = [["position", 0, 3], ["normal", 1, 3], ["label", 2, 3], ["scalar", 7, 1]];
     this.buffers = {};
-    for (const [name] of this.places) this.buffers[name] = this.buffer(this.arrays[name]);
-    // the two tracers nearest to each vertex, for the shader
-    this.dots = array(4);
-    this.nextDots = array(4);
-    this.dotBuffer = this.buffer(this.dots);
-    this.nextDotBuffer = this.buffer(this.nextDots);
-    this.corners = gl.createBuffer();
-    this.bodies = page.vesicles.map((_, v) => this.body(v));
+    for (const name of Object.keys(this.arrays)) this.buffers[name] = this.buffer(this.arrays[name]);
+    this.tracers = page.vesicles.map(() => []);
     this.nothing = gl.createVertexArray();
-    this.makeGhost(vertices);
+    this.makeBodies();
     this.makeArrows();
   }
 
@@ -48,41 +43,37 @@ class Scene {
     gl.vertexAttribDivisor(place, divisor);
   }
 
-  body(v) {
-    const { gl } = this, array = gl.createVertexArray();
-    gl.bindVertexArray(array);
-    this.bindVertices(v * this.mesh.vertices);
+  // All membranes in one draw: as they come, or sorted.
+  makeBodies() {
+    const { gl, mesh, page } = this, each = mesh.indices.length, all = new Uint32Array(each * page.vesicles.length);
+    page.vesicles.forEach((_, v) => mesh.indices.forEach((k, i) => { all[v * each + i] = v * mesh.vertices + k; }));
+    this.sorted = new Uint32Array(all.length);
+    const vertexArray = places => {
+      const made = gl.createVertexArray();
+      gl.bindVertexArray(made);
+      for (const [name, place, size] of places) this.attribute(this.buffers[name], place, size);
+      return made;
+    };
+    const place = [["position", 0, 3], ["normal", 1, 3]];
+    this.bodies = vertexArray([...place, ["label", 2, 3], ["dot", 3, 4], ["next", 4, 4], ["paint", 5, 4], ["detail", 6, 4],
+                               ["scalar", 7, 1], ["contour", 10, 3]]);
+    this.hulls = vertexArray([...place, ["outline", 2, 4]]);
+    this.corners = gl.createBuffer();
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
-    if (v === 0) gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.mesh.indices, gl.STATIC_DRAW);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, all, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
-    return { array, tracers: [] };
+    this.sortedCorners = gl.createBuffer();
   }
 
-  // What changes from vertex to vertex, from vertex `first` on.
-  bindVertices(first) {
-    for (const [name, place, size] of this.places) this.attribute(this.buffers[name], place, size, first);
-    this.attribute(this.dotBuffer, 3, 4, first);
-    this.attribute(this.nextDotBuffer, 4, 4, first);
-  }
-
-  makeGhost(vertices) {
-    const { gl, page, mesh } = this, paint = new Float32Array(4 * vertices), contour = new Float32Array(3 * vertices);
+  // One value for all vertices of each vesicle.
+  fill(name, valueOf) {
+    const { mesh, arrays, page } = this, array = arrays[name];
     page.vesicles.forEach((vesicle, v) => {
-      for (let k = v * mesh.vertices; k < (v + 1) * mesh.vertices; ++k) {
-        paint.set([...vesicle.colour, 1], 4 * k);
-        contour.set(vesicle.soft_contour, 3 * k);
-      }
+      const value = valueOf(vesicle), size = value.length;
+      for (let k = v * mesh.vertices * size, end = k + mesh.vertices * size; k < end; k += size)
+        for (let c = 0; c < size; ++c) array[k + c] = value[c];
     });
-    const ghost = { array: gl.createVertexArray(), sorted: new Uint32Array(mesh.indices.length * page.vesicles.length) };
-    gl.bindVertexArray(ghost.array);
-    this.bindVertices(0);
-    this.attribute(this.buffer(paint), 5, 4);
-    this.attribute(this.buffer(contour), 10, 3);
-    ghost.corners = gl.createBuffer();
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, ghost.corners);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, ghost.sorted, gl.DYNAMIC_DRAW);
-    gl.bindVertexArray(null);
-    this.ghost = ghost;
+    this.refill(this.buffers[name], array);
   }
 
   makeArrows() {
@@ -132,10 +123,10 @@ class Scene {
       const places = numbersAt(series.tracers, time, vesicle.breaks), tracers = [];
       for (let k = 0; k + 2 < places.length; k += 3)
         tracers.push({ ...surfacePoint(coefficients, places.slice(k, k + 3)), bright: isBright(k / 3) });
-      this.bodies[v].tracers = tracers;
-      nearestTracers(position, normal, tracers, part("dots", 2));
+      this.tracers[v] = tracers;
+      nearestTracers(position, normal, tracers, this.nearest.subarray(2 * v * count, 2 * (v + 1) * count));
     });
-    for (const [name] of this.places) this.refill(this.buffers[name], arrays[name]);
+    for (const name of ["position", "normal", "label", "scalar"]) this.refill(this.buffers[name], arrays[name]);
   }
 
   draw(styleName, camera, size) {
@@ -155,8 +146,8 @@ class Scene {
     gl.enable(gl.DEPTH_TEST);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     this.drawArrows(look, camera);
-    if (style.see_through) this.drawGhosts(look);
-    else this.drawBodies(look);
+    this.drawBodies(look);
+    if (!style.see_through && page.paint.outline_width > 0) this.drawOutlines(look);
     gl.bindVertexArray(null);
   }
 
@@ -179,7 +170,6 @@ class Scene {
     const set = this.paint.use("arrow", "", matrices);
     this.paint.ground(set);
     set.vector("u_colour", page.paint.arrow);
-    set.number("u_height", gl.drawingBufferHeight);
     set.number("u_thickness", page.paint.arrow_thickness * page.camera.half_height);
     gl.bindVertexArray(arrows.array);
     gl.drawArraysInstanced(gl.TRIANGLES, 0, arrows.vertices, count);
@@ -188,97 +178,91 @@ class Scene {
 
   // Some points of the membranes as the picture shows them.
   shadows(matrices) {
-    const { mesh, arrays, bodies } = this, places = [], stride = Math.max(3, Math.floor(mesh.vertices * bodies.length / 6000));
+    const { mesh, arrays, page } = this, places = [], stride = Math.max(3, Math.floor(mesh.vertices * page.vesicles.length / 6000));
     for (let k = 0; k < arrays.position.length / 3; k += stride)
       places.push(placeOf(matrices, [arrays.position[3 * k], arrays.position[3 * k + 1], arrays.position[3 * k + 2]]));
     return places;
   }
 
-  drawBodies(look) {
-    const { gl, page, bodies, mesh } = this, { style, matrices } = look, outlined = page.paint.outline_width > 0;
-    const each = action => bodies.forEach((body, v) => {
-      gl.bindVertexArray(body.array);
-      action(body, page.vesicles[v]);
-    });
-    if (style.tracers) this.placeDots(matrices);
-    each((_, vesicle) => this.drawBody(look, vesicle));
-    if (!outlined) return;
-    const set = this.paint.use("outline", "", matrices);
-    set.pair("u_sample", [2 / gl.drawingBufferWidth, 2 / gl.drawingBufferHeight]);
-    const hull = (vesicle, more, share) => {
-      gl.disableVertexAttribArray(2);  // of labels: here it is colour and width, the same for all vertices
-      gl.vertexAttrib4f(2, ...vesicle.contour, look.outline);
-      set.number("u_more", more);
-      set.number("u_alpha", share);
-      gl.drawElements(gl.TRIANGLES, mesh.indices.length, gl.UNSIGNED_INT, 0);
-      gl.enableVertexAttribArray(2);
-    };
-    const step = page.paint.edge_step;
-    gl.cullFace(gl.FRONT);
-    each((_, vesicle) => hull(vesicle, -step, 1));
-    gl.enable(gl.BLEND);
-    gl.depthMask(false);
-    each((_, vesicle) => {
-      hull(vesicle, 0, 1 / 2);
-      hull(vesicle, step, 1 / 3);
-    });
-    gl.depthMask(true);
-    gl.disable(gl.BLEND);
-    gl.cullFace(gl.BACK);
-  }
-
-  // The tracers of all vesicles as the vertices know them: places in eye space; 1 bright, 0 dark, -1 none.
-  placeDots(matrices) {
-    const { mesh, arrays, bodies, dots, nextDots } = this;
-    bodies.forEach(({ tracers }, v) => {
-      const places = tracers.map(tracer => [...eyePlace(matrices, tracer.point), tracer.bright ? 1 : 0]);
+  // What the vertices carry of the vesicles, the style and the camera.
+  prepare({ style, matrices }) {
+    const { page, arrays, mesh } = this;
+    if (this.prepared !== style) {
+      this.fill("paint", vesicle => [...(style.own_colour ? vesicle.colour : [1, 1, 1]), 1]);
+      this.fill("contour", vesicle => style.see_through ? vesicle.ghost_contour : vesicle.contour);
+      this.prepared = style;
+    }
+    if (!style.tracers) return;
+    this.fill("detail", vesicle => [1, 0, page.paint.tracer_radius * vesicle.radius / matrices.unit, 1]);
+    this.tracers.forEach((tracers, v) => {
+      const places = tracers.map(tracer => [...eyePlace(matrices, tracer.point), tracer.bright ? 1 : 0]), none = [0, 0, 0, -1];
       for (let k = v * mesh.vertices; k < (v + 1) * mesh.vertices; ++k) {
-        dots.set(places[arrays.dots[2 * k]] || [0, 0, 0, -1], 4 * k);
-        nextDots.set(places[arrays.dots[2 * k + 1]] || [0, 0, 0, -1], 4 * k);
+        arrays.dot.set(places[this.nearest[2 * k]] || none, 4 * k);
+        arrays.next.set(places[this.nearest[2 * k + 1]] || none, 4 * k);
       }
     });
-    this.refill(this.dotBuffer, dots);
-    this.refill(this.nextDotBuffer, nextDots);
+    this.refill(this.buffers.dot, arrays.dot);
+    this.refill(this.buffers.next, arrays.next);
   }
 
-  drawBody({ style, matrices, line, height }, vesicle) {
-    const { gl, page, mesh } = this, set = this.paint.use("body", style.defines, matrices);
-    gl.vertexAttrib4f(5, ...(style.own_colour ? vesicle.colour : [1, 1, 1]), 1);
-    gl.vertexAttrib3f(10, ...vesicle.contour);
+  drawBodies(look) {
+    const { gl, page, mesh, arrays } = this, { style, matrices, height } = look;
+    this.prepare(look);
+    const set = this.paint.use("body", style.defines, matrices);
+    this.paint.distance(set, matrices);
     set.vector("u_line_colour", page.paint.line_ink);
-    set.number("u_half_width", line);
+    set.number("u_contour_width", look.outline);
+    set.number("u_half_width", look.line);
+    set.number("u_opacity", page.paint.opacity);
+    set.vector("u_tracer_bright", page.paint.tracer_bright);
+    set.vector("u_tracer_dark", page.paint.tracer_dark);
     if (style.field) {
       gl.activeTexture(gl.TEXTURE0);
       gl.bindTexture(gl.TEXTURE_2D, this.paint.map);
       set.whole("u_map", 0);
-      const spacing = Math.max(page.paint.sign_dot_spacing * height / 1080, page.paint.sign_dot_least);
-      set.number("u_dot_spacing", 2 * spacing / height);
+      set.number("u_dot_spacing", 2 * Math.max(page.paint.sign_dot_spacing * height / 1080, page.paint.sign_dot_least) / height);
     }
-    this.paint.tracers(set, vesicle.radius / matrices.unit);
-    gl.drawElements(gl.TRIANGLES, mesh.indices.length, gl.UNSIGNED_INT, 0);
-  }
-
-  drawGhosts({ style, matrices, line, outline }) {
-    const { gl, page, ghost, mesh, arrays, bodies } = this;
-    if (style.tracers) this.placeDots(matrices);
-    sortBackToFront(matrices.view, arrays.position, mesh, bodies.length, ghost.sorted);
-    const set = this.paint.use("body", style.defines, matrices);
-    set.vector("u_line_colour", page.paint.line_ink);
-    gl.vertexAttrib1f(9, 0);  // as if every place were at a contour
-    set.number("u_contour_width", outline);
-    set.number("u_half_width", line);
-    set.number("u_opacity", page.paint.opacity);
-    this.paint.tracers(set, Math.max(...page.vesicles.map(v => v.radius)) / matrices.unit);
-    gl.bindVertexArray(ghost.array);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, ghost.corners);
-    gl.bufferSubData(gl.ELEMENT_ARRAY_BUFFER, 0, ghost.sorted);
+    gl.bindVertexArray(this.bodies);
+    gl.vertexAttrib1f(9, 0);  // from the contour: everything may be one
+    if (!style.see_through) {
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+      gl.drawElements(gl.TRIANGLES, this.sorted.length, gl.UNSIGNED_INT, 0);
+      return;
+    }
+    sortBackToFront(matrices.view, arrays.position, mesh, page.vesicles.length, this.sorted);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.sortedCorners);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.sorted, gl.DYNAMIC_DRAW);
     gl.enable(gl.BLEND);
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.CULL_FACE);
-    gl.drawElements(gl.TRIANGLES, ghost.sorted.length, gl.UNSIGNED_INT, 0);
+    gl.drawElements(gl.TRIANGLES, this.sorted.length, gl.UNSIGNED_INT, 0);
     gl.enable(gl.CULL_FACE);
     gl.enable(gl.DEPTH_TEST);
     gl.disable(gl.BLEND);
+  }
+
+  drawOutlines(look) {
+    const { gl, page } = this, { matrices } = look, step = page.paint.edge_step;
+    this.fill("outline", vesicle => [...vesicle.contour, look.outline]);
+    const set = this.paint.use("outline", "", matrices);
+    this.paint.distance(set, matrices);
+    set.pair("u_sample", [2 / gl.drawingBufferWidth, 2 / gl.drawingBufferHeight]);
+    gl.bindVertexArray(this.hulls);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+    const hull = (more, share) => {
+      set.number("u_more", more);
+      set.number("u_alpha", share);
+      gl.drawElements(gl.TRIANGLES, this.sorted.length, gl.UNSIGNED_INT, 0);
+    };
+    gl.cullFace(gl.FRONT);
+    hull(-step, 1);
+    gl.enable(gl.BLEND);
+    gl.depthMask(false);
+    hull(0, 1 / 2);
+    hull(step, 1 / 3);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
+    gl.cullFace(gl.BACK);
   }
 }
 

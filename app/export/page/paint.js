@@ -22,8 +22,10 @@ class Paint {
     const key = name + "\n" + defines;
     if (this.programs.has(key)) return this.programs.get(key);
     const { gl, page } = this;
+    const before = suffix => page.libraries[name + suffix].map(part => page.shaders[part]).join("");
+    if (before(".vert")) defines += page.defines;  // programs that know the distance
     const head = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n" + defines;
-    const text = suffix => head + page.libraries[name + suffix].map(part => page.shaders[part]).join("") + page.shaders[name + suffix];
+    const text = suffix => head + before(suffix) + page.shaders[name + suffix];
     const whole = gl.createProgram();
     for (const [kind, source] of [[gl.VERTEX_SHADER, text(".vert")], [gl.FRAGMENT_SHADER, text(".frag")]]) {
       const shader = gl.createShader(kind);
@@ -46,6 +48,7 @@ class Paint {
       whole: (uniform, value) => gl.uniform1i(place(uniform), value),
       pair: (uniform, value) => gl.uniform2f(place(uniform), ...value),
       vector: (uniform, value) => gl.uniform3f(place(uniform), ...value),
+      vectors4: (uniform, values) => gl.uniform4fv(place(uniform), values),
       matrix: (uniform, values) => gl.uniformMatrix4fv(place(uniform), false, values),
     };
     this.programs.set(key, { whole, set });
@@ -68,12 +71,14 @@ class Paint {
     set.vector("u_top", this.page.paint.top);
     set.vector("u_bottom", this.page.paint.bottom);
     set.number("u_ground", 1);
+    set.number("u_height", this.gl.drawingBufferHeight);
   }
 
-  tracers(set, radius) {
-    const { paint } = this.page;
-    set.vector("u_tracer_bright", paint.tracer_bright);
-    set.vector("u_tracer_dark", paint.tracer_dark);
-    this.gl.vertexAttrib4f(6, 1, 0, paint.tracer_radius * radius, 1);  // all lines, all dots
+  // What is far away fades into the ground.
+  distance(set, camera) {
+    const { depth_cue: share } = this.page.paint;
+    if (share > 0) set.vector("u_cue", [share, (camera.depth - camera.distance) / camera.unit, 2 * camera.depth / camera.unit]);
+    this.ground(set);
   }
+
 }
