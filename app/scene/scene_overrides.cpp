@@ -36,7 +36,9 @@ toml::table parse_value(const std::string& value, const std::string& source) {
       } catch (const toml::parse_error&) {
         // It is no number for other reasons.
       }
-    if (value.find_first_of("\"'[]{}\n#=") != std::string::npos)
+    // A colour, which would begin a comment.
+    const bool is_colour = value.starts_with('#') && value.find_first_of(" \t", 1) == std::string::npos;
+    if (value.find_first_of("\"'[]{}\n#=", is_colour ? 1 : 0) != std::string::npos)
       throw std::runtime_error(fmt::format("{}: {}", source, error.description()));
     return toml::parse("value = \"" + value + "\"", source);
   }

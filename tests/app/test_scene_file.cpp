@@ -214,6 +214,8 @@ TEST_CASE("overrides change any key, and their errors name them", "[scene]") {
   CHECK_THAT(error_of(good, {"time.end"}), Contains("section.key=value"));
   CHECK_THAT(error_of(good, {"viev.size=[1,2]"}), Contains("did you mean 'view'?"));
   CHECK_THAT(error_of(good, {"view.size=[1,"}), Contains("--set view.size=[1,"));
+  CHECK_THAT(error_of(good, {"view.background=#12345"}), Contains("'#12345' is no known"));
+  CHECK_THAT(error_of(good, {"view.background=#123456 # blue"}), Contains("expected value"));
 }
 
 TEST_CASE("a key without its table, or in another one, is told with the table it belongs to", "[scene]") {
