@@ -327,14 +327,18 @@ class Run {
       }
   }
 
-  /// Once a vesicle and run, too.
+  /// Once a vesicle and run, too; of many at once the worst is named.
   void warn_of_limits(const Dynamics& before, double dt, std::span<const SpaceError> errors) {
     const double allowed = allowed_space_error(model_, before, dt);
-    for (std::size_t k = 0; k < errors.size(); ++k)
-      if (const double times = errors[k].here / allowed; !d_.vesicles[k].warned && limited(model_, d_, k, times)) {
-        d_.vesicles[k].warned = true;
-        warn(fmt::format("t = {:.6g}: {}", d_.time, limit_warning(model_, d_, k, times)));
-      }
+    std::size_t worst = 0, found = 0;
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      if (d_.vesicles[k].warned || !limited(model_, d_, k, errors[k].here / allowed)) continue;
+      d_.vesicles[k].warned = true;
+      if (found++ == 0 || errors[k].here > errors[worst].here) worst = k;
+    }
+    if (found > 0)
+      warn(fmt::format("t = {:.6g}: {}", d_.time,
+                       limit_warning(model_, d_, worst, errors[worst].here / allowed, found - 1)));
   }
 
   void write_resume_point() {

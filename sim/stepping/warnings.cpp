@@ -39,10 +39,11 @@ bool limited(const Model& s, const Dynamics& d, std::size_t k, double times_allo
   return times_allowed > tolerable && cannot_rise(s, d, k);
 }
 
-std::string limit_warning(const Model& s, const Dynamics& d, std::size_t k, double times_allowed) {
+std::string limit_warning(const Model& s, const Dynamics& d, std::size_t k, double times_allowed, std::size_t others) {
   const int order = d.vesicles[k].position.order;
-  return fmt::format("vesicle {}: order {} leaves errors {:.2g} times as large as the tolerance allows; try {} {}", k,
-                     order, times_allowed, order_key(s, k), order * 3 / 2);
+  const std::string more = others == 0 ? "" : fmt::format(" (and {} more, less)", others);
+  return fmt::format("vesicle {}{}: order {} leaves errors {:.2g} times as large as the tolerance allows; try {} {}", k,
+                     more, order, times_allowed, order_key(s, k), order * 3 / 2);
 }
 
 namespace {

@@ -12,8 +12,8 @@ std::string resolution_warning(const Model&, const Dynamics&, std::size_t k);
 /// Whether the errors that the degrees of vesicle k leave are so many times as large as allowed that one must be told,
 /// and no higher order will come by itself.
 bool limited(const Model&, const Dynamics&, std::size_t k, double times_allowed);
-/// The warning of that.
-std::string limit_warning(const Model&, const Dynamics&, std::size_t k, double times_allowed);
+/// The warning of that for vesicle k, the worst, and so many others.
+std::string limit_warning(const Model&, const Dynamics&, std::size_t k, double times_allowed, std::size_t others);
 /// All warnings about a scene before its first step: unresolved vesicles, flows that move nothing or vary faster than
 /// the step.
 std::vector<std::string> scene_warnings(const Model&, const Dynamics&);
