@@ -7,6 +7,7 @@
 #include "render/scene/frame.h"
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace render {
@@ -32,7 +33,11 @@ struct Variant {
   bool tracers = true;
   bool sign_dots = false;
   bool occluded = false;
-  friend auto operator<=>(const Variant&, const Variant&) = default;
+  /// An order for maps.
+  friend bool operator<(const Variant& a, const Variant& b) {
+    return std::tie(a.grid, a.sparse, a.tracers, a.sign_dots, a.occluded) <
+           std::tie(b.grid, b.sparse, b.tracers, b.sign_dots, b.occluded);
+  }
 };
 Variant variant_of(const Frame& frame, const Body& body, const Detail& detail);
 

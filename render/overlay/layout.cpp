@@ -27,7 +27,7 @@ class Ruler {
       do text.pop_back();
       while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U);
       if (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0xC0U) text.pop_back();
-      if (const std::string whole = text + "…"; width(size, whole) <= room) return whole;
+      if (std::string whole = text + "…"; width(size, whole) <= room) return whole;
     }
     return {};
   }

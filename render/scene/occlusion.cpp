@@ -13,7 +13,9 @@ constexpr double large = 80;  // px: from here on all discs count
 // The key light of light.glsl, in eye space.
 const glm::dvec3 key_direction = glm::normalize(glm::dvec3(-0.45, 0.75, 0.85));
 
-std::size_t index_of(int i, int j) { return static_cast<std::size_t>((j + columns) % columns * rows + i); }
+std::size_t index_of(int i, int j) {
+  return static_cast<std::size_t>((j + columns) % columns) * rows + static_cast<std::size_t>(i);
+}
 
 void add(Discs& discs, const glm::dvec3& place, const glm::dvec3& area) {
   const double size = glm::length(area);

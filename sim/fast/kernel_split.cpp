@@ -33,14 +33,14 @@ std::array<long double, 4> spherical_bessel(long double x) {
   return j;
 }
 
-constexpr int nodes = 48;  // Chebyshev nodes at which functions are known
-using Series = std::array<long double, nodes>;
+constexpr int samples = 48;  // Chebyshev nodes at which functions are known
+using Series = std::array<long double, samples>;
 
 Series chebyshev_series(const Series& values) {
   Series series{};
-  for (int m = 0; m < nodes; ++m)
-    for (int j = 0; j < nodes; ++j)
-      series[m] += values[j] * std::cos(pi_l * m * (j + 0.5L) / nodes) * (m > 0 ? 2 : 1) / nodes;
+  for (int m = 0; m < samples; ++m)
+    for (int j = 0; j < samples; ++j)
+      series[m] += values[j] * std::cos(pi_l * m * (j + 0.5L) / samples) * (m > 0 ? 2 : 1) / samples;
   return series;
 }
 
@@ -48,8 +48,8 @@ Series chebyshev_series(const Series& values) {
 std::vector<double> multiplier_series(double wave_number) {
   const Prolate mollifier(wave_number - 0.5);  // half less than c leaves five times less error of the double layer
   Series values{};
-  for (int j = 0; j < nodes; ++j) {
-    const double x = std::sqrt((std::cos(std::numbers::pi * (j + 0.5) / nodes) + 1) / 2);
+  for (int j = 0; j < samples; ++j) {
+    const double x = std::sqrt((std::cos(std::numbers::pi * (j + 0.5) / samples) + 1) / 2);
     const Prolate::Value psi = mollifier(x);
     values[j] = psi.value - x / 2 * psi.slope;
   }
@@ -64,8 +64,8 @@ std::array<Series, 4> radial_series(const KernelSplit& split) {
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const long double k = split.wave_number() * (rule.node[i] + 1) / 2;
     const long double h = split.multiplier(static_cast<double>(k)) * rule.weight[i] * split.wave_number() / 2;
-    for (int j = 0; j < nodes; ++j) {
-      const long double r = std::sqrt((std::cos(pi_l * (j + 0.5L) / nodes) + 1) / 2), x = k * r;
+    for (int j = 0; j < samples; ++j) {
+      const long double r = std::sqrt((std::cos(pi_l * (j + 0.5L) / samples) + 1) / 2), x = k * r;
       const auto [j0, j1, j2, j3] = spherical_bessel(x);
       values[0][j] += 4 / pi_l * h * (j0 - j1 / x);
       values[1][j] += 4 / pi_l * h * j2 / (r * r);
@@ -80,7 +80,7 @@ std::array<Series, 4> radial_series(const KernelSplit& split) {
 /// Degree at which the rest of a series is below the accuracy.
 int needed_degree(const Series& series, double accuracy) {
   double rest = 0;
-  for (int m = nodes - 1; m > 0; --m) {
+  for (int m = samples - 1; m > 0; --m) {
     rest += static_cast<double>(std::abs(series[m]));
     if (rest > accuracy) return m;
   }
