@@ -41,21 +41,21 @@ double rest(double d, double q, double y) { return d / std::expm1(q * y); }
 
 }  // namespace
 
-std::string_view text_of(Verdict verdict) {
+std::string_view text_of(OrderVerdict verdict) {
   switch (verdict) {
-    case Verdict::converges:
+    case OrderVerdict::converges:
       return "converges";
-    case Verdict::settled:
+    case OrderVerdict::settled:
       return "within noise";
-    case Verdict::slow:
+    case OrderVerdict::slow:
       return "falls too slowly";
-    case Verdict::grows:
+    case OrderVerdict::grows:
       return "differences do not fall";
-    case Verdict::alternates:
+    case OrderVerdict::alternates:
       return "alternates";
-    case Verdict::too_few:
+    case OrderVerdict::too_few:
       return "two values";
-    case Verdict::undefined:
+    case OrderVerdict::undefined:
       return "not in all runs";
   }
   return {};
@@ -93,7 +93,7 @@ Convergence convergence_of(const std::vector<double>& h, const std::vector<doubl
   c.errors = spreads(values, 3);
   c.uncertainty = n > 2 ? std::max(std::abs(last), std::abs(values[n - 3] - values[n - 2])) : std::abs(last);
   if (n == 2) {
-    c.verdict = Verdict::too_few;
+    c.verdict = OrderVerdict::too_few;
     return c;
   }
   const double before = values[n - 3] - values[n - 2];
@@ -103,27 +103,27 @@ Convergence convergence_of(const std::vector<double>& h, const std::vector<doubl
     c.errors = distances(values, *c.limit);
   };
   if (std::abs(last) <= noise) {
-    c.verdict = Verdict::settled;
+    c.verdict = OrderVerdict::settled;
     take_last(noise);
     return c;
   }
   if (last * before < 0) {
-    c.verdict = Verdict::alternates;
+    c.verdict = OrderVerdict::alternates;
     if (std::abs(before) >= least_fall * std::abs(last)) take_last(std::abs(last));
     return c;
   }
   const double y = std::log(h[n - 2] / h[n - 1]);
   c.order = observed_order({h[n - 3], h[n - 2], h[n - 1]}, {values[n - 3], values[n - 2], values[n - 1]});
   if (!c.order) {
-    c.verdict = Verdict::grows;
+    c.verdict = OrderVerdict::grows;
     return c;
   }
   if (std::exp(*c.order * y) < least_fall) {
     c.order.reset();
-    c.verdict = Verdict::slow;
+    c.verdict = OrderVerdict::slow;
     return c;
   }
-  c.verdict = Verdict::converges;
+  c.verdict = OrderVerdict::converges;
   c.limit = values[n - 1] - rest(last, *c.order, y);
   c.errors = distances(values, *c.limit);
   c.uncertainty = std::abs(rest(last, expected ? std::min(*expected, *c.order) : *c.order, y));

@@ -13,7 +13,7 @@
 
 namespace app {
 
-enum class Verdict {
+enum class OrderVerdict {
   converges,   ///< order and limit are known
   settled,     ///< the last differences are within the noise: the limit is the last value
   slow,        ///< the differences fall, but too little to tell the limit
@@ -23,10 +23,10 @@ enum class Verdict {
   undefined,   ///< a value is not a number
 };
 /// "differences do not fall", for tables.
-std::string_view text_of(Verdict);
+std::string_view text_of(OrderVerdict);
 
 struct Convergence {
-  Verdict verdict = Verdict::undefined;
+  OrderVerdict verdict = OrderVerdict::undefined;
   std::optional<double> order;  ///< q of the last three values
   std::optional<double> limit;  ///< v; the last value where no order tells it
   double uncertainty = 0;       ///< of the limit; without one: the largest of the last differences

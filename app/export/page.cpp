@@ -49,7 +49,7 @@ std::string deflated(const std::string& bytes) {
 }
 
 template <class T>
-std::string bytes_of(const std::vector<T>& values) {
+std::string memory_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
@@ -273,7 +273,7 @@ void write_shaders(Members& page, bool fades) {
   std::vector<float> numbers;
   for (const auto& vertices : {arrow.position, arrow.normal})
     for (const glm::vec3& v : vertices) numbers.insert(numbers.end(), {v.x, v.y, v.z});
-  page.text("arrow_shape", base64(bytes_of(numbers)));
+  page.text("arrow_shape", base64(memory_of(numbers)));
 }
 
 /// What the passes of draw_frame() set.

@@ -15,7 +15,7 @@ struct Corner {
   double depth;      // distance from the eye along the line of sight
 };
 
-// The part of the net of cells round one body, and the depth of its front where it covers the middle of a cell.
+// The part of the cover of cells round one body, and the depth of its front where it covers the middle of a cell.
 struct Patch {
   int left = 0, top = 0, width = 0, height = 0;
   std::vector<float> depth;
@@ -25,7 +25,7 @@ struct Patch {
   }
 };
 
-struct Net {
+struct Cover {
   int width, height;
   double cell;               // px
   std::vector<float> front;  // farthest point of the nearest that covers the cell
@@ -79,22 +79,22 @@ Patch patch_of(const std::vector<Corner>& corners, int margin) {
 }
 
 // Is every cell within `margin` of the body covered by something nearer?
-bool is_behind(Net& net, Patch& patch, int margin, double nearest) {
+bool is_behind(Cover& cover, Patch& patch, int margin, double nearest) {
   for (int y = patch.top + margin; y < patch.top + patch.height - margin; ++y)
     for (int x = patch.left + margin; x < patch.left + patch.width - margin; ++x) {
       if (patch.at(x, y) == nothing) continue;
       for (int v = y - margin; v <= y + margin; ++v)
         for (int u = x - margin; u <= x + margin; ++u)
-          if (net.inside(u, v) && !(static_cast<double>(net.at(u, v)) < nearest)) return false;
+          if (cover.inside(u, v) && !(static_cast<double>(cover.at(u, v)) < nearest)) return false;
     }
   return true;
 }
 
 // Cells that the body covers with all within `reach` of them.
-void add(Net& net, Patch& patch, int reach) {
+void add(Cover& cover, Patch& patch, int reach) {
   for (int y = patch.top + reach; y + reach < patch.top + patch.height; ++y)
     for (int x = patch.left + reach; x + reach < patch.left + patch.width; ++x) {
-      if (!net.inside(x, y) || patch.at(x, y) == nothing) continue;
+      if (!cover.inside(x, y) || patch.at(x, y) == nothing) continue;
       float farthest = nothing;
       bool whole = true;
       for (int v = y - reach; v <= y + reach && whole; ++v)
@@ -102,7 +102,7 @@ void add(Net& net, Patch& patch, int reach) {
           whole = whole && patch.at(u, v) != nothing;
           farthest = std::max(farthest, patch.at(u, v));
         }
-      if (whole) net.at(x, y) = std::min(net.at(x, y), farthest);
+      if (whole) cover.at(x, y) = std::min(cover.at(x, y), farthest);
     }
 }
 
@@ -112,9 +112,9 @@ std::vector<bool> hidden(std::span<const Sketch> sketches, const Camera& camera,
   constexpr double cells_high = 720;
   const int width = view.size[0], height = view.size[1];
   const double cell = std::max(1.0, height / cells_high);
-  Net net{static_cast<int>(std::ceil(width / cell)), static_cast<int>(std::ceil(height / cell)), cell, {}};
-  net.front.assign(static_cast<std::size_t>(net.width) * static_cast<std::size_t>(net.height),
-                   std::numeric_limits<float>::infinity());
+  Cover cover{static_cast<int>(std::ceil(width / cell)), static_cast<int>(std::ceil(height / cell)), cell, {}};
+  cover.front.assign(static_cast<std::size_t>(cover.width) * static_cast<std::size_t>(cover.height),
+                     std::numeric_limits<float>::infinity());
   const glm::dvec3 back = glm::normalize(camera.eye - camera.target);
   const auto depth_of = [&](const glm::dvec3& p) { return glm::dot(camera.eye - p, back) / camera.half_height; };
   std::vector<std::pair<double, std::size_t>> order;  // by the nearest point
@@ -143,8 +143,8 @@ std::vector<bool> hidden(std::span<const Sketch> sketches, const Camera& camera,
     const int margin = static_cast<int>(std::ceil((outline + error) / cell + 0.5));
     const int inside = static_cast<int>(std::ceil(std::max(error / cell, 1.0)));
     Patch patch = patch_of(corners, std::max(margin, inside));
-    result[k] = is_behind(net, patch, margin, nearest);
-    if (!result[k]) add(net, patch, inside);
+    result[k] = is_behind(cover, patch, margin, nearest);
+    if (!result[k]) add(cover, patch, inside);
   }
   return result;
 }

@@ -17,12 +17,6 @@
 
 namespace sim {
 
-namespace {
-
-constexpr double four_pi = 4 * std::numbers::pi;
-
-}  // namespace
-
 double fixed_step(const Scene& scene) {
   if (!scene.time.step)
     throw std::invalid_argument(fmt::format("the scheme '{}' takes fixed steps: give time.step", scheme_name(scene)));
@@ -48,14 +42,14 @@ double strain(const Model& s, const Dynamics& d) {
 
 /// x := c + R (x - c)/|x - c|, the sphere of the given volume.
 void make_round(Coefficients& x, double volume) {
-  const double radius = std::cbrt(3 * volume / four_pi);
+  const double radius = std::cbrt(3 * volume / unit_sphere_area);
   const Basis basis(x.order, 2 * x.order + 8);
   const Vec3 centre = rigid_body(x).centre;
   Matrix arms = basis.synthesize(x).values.rowwise() - centre.transpose();
   arms.rowwise().normalize();
   const Coefficients round = basis.analyze(Matrix(radius * arms));
   x = round;
-  x.values.row(0) += std::sqrt(four_pi) * centre.transpose();
+  x.values.row(0) += std::sqrt(unit_sphere_area) * centre.transpose();
 }
 
 /// What a vesicle starts with that no step has moved yet, or that other flows take from now on: the frame of the flow.
@@ -164,7 +158,7 @@ Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
     const Measures measured = measures(g);
     v.area = measured.area;
     v.volume = measured.volume;
-    v.energy = measured.h_squared / four_pi;
+    v.energy = measured.h_squared / unit_sphere_area;
     v.tail = curvature_tail(s.plans.basis(p, measure_order(p)), g);
     v.high_share = high_degree_share(v.position);
     start_anew(s, 0, 0, v);

@@ -4,7 +4,11 @@
 
 #include "sim/stepping/evaluate.h"
 
+#include <numbers>
+
 namespace sim {
+
+inline constexpr double unit_sphere_area = 4 * std::numbers::pi;
 
 /// Algorithm 1 runs anew after so many steps.
 inline constexpr std::int64_t upsampling_steps = 10;

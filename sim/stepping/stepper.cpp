@@ -9,16 +9,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace sim {
 
 namespace {
 
-constexpr double four_pi = 4 * std::numbers::pi;
-
-double energy_of(const Geometry& g) { return integrate(g, g.H.cwiseAbs2()) / four_pi; }
+double energy_of(const Geometry& g) { return integrate(g, g.H.cwiseAbs2()) / unit_sphere_area; }
 
 /// Moves the grid points along the membrane and carries everything that belongs to the material. False: it would not
 /// pay.
@@ -133,7 +130,7 @@ Attempt<Finished> finish_vesicle(const Model& s, VesicleDynamics& v, Moved moved
   }
   const Geometry now = measured_geometry(s.plans, v.position);
   const Measures after = measures(now);
-  v.energy = after.h_squared / four_pi;
+  v.energy = after.h_squared / unit_sphere_area;
   if (n.upsampling == 0 && all.step >= v.upsampling_due) {
     v.upsampling = upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
     v.upsampling_due = all.step + upsampling_steps;

@@ -13,7 +13,7 @@
 
 using app::Convergence;
 using app::convergence_of;
-using app::Verdict;
+using app::OrderVerdict;
 using Catch::Contains;
 using commands::Desk;
 using support::Outcome;
@@ -91,10 +91,10 @@ TEST_CASE("values v + C h^q have the order q and the limit v, whatever the steps
           if (rounding > 0.01) continue;
           INFO("q = " << q << ", C = " << c << ", v = " << v << ", h = " << h[0] << ", " << h[1] << ", ...");
           if (std::pow(h[h.size() - 2] / h.back(), q) < 4.0 / 3) {  // more than three times the last difference is left
-            CHECK(r.verdict == Verdict::slow);
+            CHECK(r.verdict == OrderVerdict::slow);
             continue;
           }
-          REQUIRE(r.verdict == Verdict::converges);
+          REQUIRE(r.verdict == OrderVerdict::converges);
           CHECK(*r.order == Approx(q).epsilon(20 * rounding + 1e-12));
           CHECK(*r.limit == Approx(v).margin(20 * rounding * std::abs(last) + 1e-14 * (1 + std::abs(v))));
           for (std::size_t k = 0; k < h.size(); ++k)
@@ -113,25 +113,25 @@ TEST_CASE("a sequence that does not converge has no order and no limit, and says
   const std::vector<double> h{0.4, 0.2, 0.1};
   const auto verdict = [&](std::vector<double> values, double noise = 0) {
     const Convergence r = convergence_of(h, values, noise);
-    const bool limited = r.verdict == Verdict::converges || r.verdict == Verdict::settled;
-    CHECK(r.order.has_value() == (r.verdict == Verdict::converges));
+    const bool limited = r.verdict == OrderVerdict::converges || r.verdict == OrderVerdict::settled;
+    CHECK(r.order.has_value() == (r.verdict == OrderVerdict::converges));
     CHECK(r.limit.has_value() == limited);
     CHECK(r.errors.size() == values.size());
     return r.verdict;
   };
-  CHECK(verdict({1, 2, 4}) == Verdict::grows);
-  CHECK(verdict({1, 2, 3}) == Verdict::grows);  // no fall at all
-  CHECK(verdict({1, 1, 2}) == Verdict::grows);
-  CHECK(verdict({1, 2, 2.9}) == Verdict::slow);  // by a tenth: the rest would be nine times the last difference
-  CHECK(verdict({1, 2, 0.5}) == Verdict::alternates);
-  CHECK(verdict({1, 2, 2}) == Verdict::settled);
-  CHECK(verdict({3, 3, 3}) == Verdict::settled);
-  CHECK(verdict({1, std::nan(""), 1}) == Verdict::undefined);
-  CHECK(verdict({1, INFINITY, 1}) == Verdict::undefined);
+  CHECK(verdict({1, 2, 4}) == OrderVerdict::grows);
+  CHECK(verdict({1, 2, 3}) == OrderVerdict::grows);  // no fall at all
+  CHECK(verdict({1, 1, 2}) == OrderVerdict::grows);
+  CHECK(verdict({1, 2, 2.9}) == OrderVerdict::slow);  // by a tenth: the rest would be nine times the last difference
+  CHECK(verdict({1, 2, 0.5}) == OrderVerdict::alternates);
+  CHECK(verdict({1, 2, 2}) == OrderVerdict::settled);
+  CHECK(verdict({3, 3, 3}) == OrderVerdict::settled);
+  CHECK(verdict({1, std::nan(""), 1}) == OrderVerdict::undefined);
+  CHECK(verdict({1, INFINITY, 1}) == OrderVerdict::undefined);
   // Differences within the noise tell no order, though their ratio would.
-  CHECK(verdict({1.4e-9, 1.2e-9, 1.1e-9}) == Verdict::converges);
-  CHECK(verdict({1.4e-9, 1.2e-9, 1.1e-9}, 1e-8) == Verdict::settled);
-  CHECK(convergence_of({0.2, 0.1}, {1, 2}).verdict == Verdict::too_few);
+  CHECK(verdict({1.4e-9, 1.2e-9, 1.1e-9}) == OrderVerdict::converges);
+  CHECK(verdict({1.4e-9, 1.2e-9, 1.1e-9}, 1e-8) == OrderVerdict::settled);
+  CHECK(convergence_of({0.2, 0.1}, {1, 2}).verdict == OrderVerdict::too_few);
   CHECK(convergence_of({0.2, 0.1}, {1, 2}).uncertainty == 1);
   CHECK_THROWS_AS(convergence_of({0.1, 0.2, 0.3}, {1, 2, 4}), std::invalid_argument);
   CHECK_THROWS_AS(convergence_of({0.1}, {1}), std::invalid_argument);
@@ -139,7 +139,7 @@ TEST_CASE("a sequence that does not converge has no order and no limit, and says
 
 TEST_CASE("the limit of differences that alternate and fall lies between the last two values") {
   const Convergence r = convergence_of({0.4, 0.2, 0.1}, {1, 2, 1.9});
-  CHECK(r.verdict == Verdict::alternates);
+  CHECK(r.verdict == OrderVerdict::alternates);
   CHECK_FALSE(r.order);
   CHECK(*r.limit == 1.9);
   CHECK(r.uncertainty == Approx(0.1));
