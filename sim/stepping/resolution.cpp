@@ -52,7 +52,7 @@ std::vector<Coefficients> velocities_of_less(const Model& s, const Dynamics& bef
 
 /// Error of position, in area radii, that a degree leaves where the nearest neighbour is `gap` area radii away.
 double film_error(int degree, double gap) {
-  constexpr double decay = 2.1;  // measured between gaps of 0.05 and 0.2
+  constexpr double decay = 2.1;  // measured between gaps of 0.03 and 0.2
   return std::exp(-decay * degree * std::sqrt(gap));
 }
 
