@@ -8,13 +8,13 @@
 namespace render {
 namespace {
 
-constexpr int rows = Sketch::latitudes + 1, columns = Sketch::longitudes;
+constexpr int rings = Sketch::latitudes + 1, columns = Sketch::longitudes;
 constexpr double large = 80;  // px: from here on all discs count
 // The key light of light.glsl, in eye space.
 const glm::dvec3 key_direction = glm::normalize(glm::dvec3(-0.45, 0.75, 0.85));
 
 std::size_t index_of(int i, int j) {
-  return static_cast<std::size_t>((j + columns) % columns) * rows + static_cast<std::size_t>(i);
+  return static_cast<std::size_t>((j + columns) % columns) * rings + static_cast<std::size_t>(i);
 }
 
 void add(Discs& discs, const glm::dvec3& place, const glm::dvec3& area) {
@@ -56,7 +56,7 @@ struct Values {
   std::vector<glm::dvec2> at;  // as Sketch::points
   const glm::dvec2& operator()(int i, int j) const {
     if (i < 0) i = -i, j += columns / 2;
-    if (i > rows - 1) i = 2 * (rows - 1) - i, j += columns / 2;
+    if (i > rings - 1) i = 2 * (rings - 1) - i, j += columns / 2;
     return at[index_of(i, j % columns)];
   }
   glm::dvec2 between(double row, double column) const {
@@ -77,9 +77,9 @@ struct Values {
 Occluder occluder_of(const Sketch& sketch) {
   Occluder occluder;
   for (int j = 0; j < columns; ++j)
-    for (int i = 1; i < rows - 1; ++i) add(occluder.fine, sketch.points[index_of(i, j)], sketch.areas[index_of(i, j)]);
+    for (int i = 1; i < rings - 1; ++i) add(occluder.fine, sketch.points[index_of(i, j)], sketch.areas[index_of(i, j)]);
   for (int j = 0; j < columns; j += 2)
-    for (int i = 0; i < rows - 1; i += 2) {
+    for (int i = 0; i < rings - 1; i += 2) {
       glm::dvec3 place(0), area(0);
       double sum = 0;
       for (const std::size_t k : {index_of(i, j), index_of(i + 1, j), index_of(i, j + 1), index_of(i + 1, j + 1)}) {
@@ -111,15 +111,15 @@ void shade(Mesh& mesh, std::size_t self, std::span<const Sketch> sketches, std::
   }
   Values values{fine ? 1 : 2, std::vector<glm::dvec2>(own.points.size(), glm::dvec2(1))};
   for (int j = 0; j < columns; j += values.stride)
-    for (int i = 0; i < rows; i += values.stride) {
-      const bool pole = i == 0 || i == rows - 1;
+    for (int i = 0; i < rings; i += values.stride) {
+      const bool pole = i == 0 || i == rings - 1;
       if (pole && j > 0) {
         values.at[index_of(i, j)] = values.at[index_of(i, 0)];
         continue;
       }
       glm::dvec3 area = own.areas[index_of(i, j)];
       if (pole)
-        for (int around = 0; around < columns; ++around) area += own.areas[index_of(i == 0 ? 1 : rows - 2, around)];
+        for (int around = 0; around < columns; ++around) area += own.areas[index_of(i == 0 ? 1 : rings - 2, around)];
       const glm::dvec3 normal = area / std::max(glm::length(area), 1e-300), place = own.points[index_of(i, j)];
       glm::dvec2 open = 1.0 - hidden_by(fine ? occluders[self].fine : occluders[self].coarse, place, normal, key);
       for (const Neighbour& n : neighbours) open *= 1.0 - n.share * hidden_by(*n.discs, place, normal, key);
@@ -134,10 +134,10 @@ void shade(Mesh& mesh, std::size_t self, std::span<const Sketch> sketches, std::
   };
   for (int j = 0; j < plan.longitudes(); ++j)
     for (int i = 0; i < rings; ++i)
-      put(static_cast<double>(i + 1) * (rows - 1) / plan.latitudes(),
+      put(static_cast<double>(i + 1) * (rings - 1) / plan.latitudes(),
           static_cast<double>(j) * columns / plan.longitudes());
   put(0, 0);
-  put(rows - 1, 0);
+  put(rings - 1, 0);
 }
 
 }  // namespace render

@@ -24,9 +24,9 @@ CosineRule window_rule(int width, const Prolate& shape, const GaussRule& rule) {
 /// The largest relative error that spreading makes by aliases of a wave number.
 double aliasing(const CosineRule& window, const KernelSplit& split, double oversampling) {
   double worst = 0;
-  constexpr int samples = 40, aliases = 3;
-  for (int i = 0; i <= samples; ++i) {
-    const double share = static_cast<double>(i) / samples, k = pi / oversampling * share;
+  constexpr int intervals = 40, aliases = 3;
+  for (int i = 0; i <= intervals; ++i) {
+    const double share = static_cast<double>(i) / intervals, k = pi / oversampling * share;
     double square = 0;
     for (int m = -aliases; m <= aliases; ++m)
       if (m != 0) square += std::pow(window(k + 2 * pi * m), 2);

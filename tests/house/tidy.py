@@ -42,7 +42,8 @@ def flags_of(command):
             next(words)
         elif word != "-Winvalid-pch":
             flags.append(word)
-    return flags
+    # A local name of one file may well be a name of the file after it; within one file GCC tells of shadows.
+    return [*flags, "-Werror", "-Wno-shadow"]
 
 
 def folders(build, wanted):
