@@ -36,7 +36,7 @@ SourceMeasures measures_of(const PictureSource& source, bool titled, std::option
   SourceMeasures m;
   std::set<double> laid;
   for (const std::int64_t i : chosen) {
-    const sim::State state = trajectory.state(i);
+    const sim::State state = boxed(settings.scene, trajectory.state(i));
     m.summaries.push_back(render::summarize(state));
     for (const sim::VesicleState& v : state.vesicles)
       if (v.labels_laid > 0) laid.insert(v.labels_laid_time);
@@ -46,7 +46,7 @@ SourceMeasures measures_of(const PictureSource& source, bool titled, std::option
   const sim::VesicleMeasures first = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
   const double area_radius = std::sqrt(first.area / sim::default_area);
   std::optional<sim::State> only;
-  if (still) only = state_at(trajectory, *still);
+  if (still) only = boxed(settings.scene, state_at(trajectory, *still));
   m.painting = plan_painting(trajectory, chosen, settings, area_radius, only ? &*only : nullptr);
   m.captions.parameters = parameter_caption(settings.scene, area_radius, first.reduced_volume);
   m.captions.scale_length = area_radius;
