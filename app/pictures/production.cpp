@@ -83,10 +83,27 @@ Production arranged(const render::ViewParameters& first, std::size_t sources, st
   return production;
 }
 
+/// In a periodic cell, its corners stand for one vesicle more, so that the picture holds them.
+std::vector<render::StateSummary> with_cell(const PictureSource& source, std::vector<render::StateSummary> summaries) {
+  const std::optional<sim::Vec3>& size = source.settings.scene.cell.size;
+  if (!size) return summaries;
+  for (render::StateSummary& s : summaries) {
+    const std::size_t points = s.points_of_each();
+    s.centroids.emplace_back(0);
+    for (std::size_t k = 0; k < points; ++k) {
+      const sim::Vec3 corner(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5);
+      s.points.emplace_back(render::to_glm(sim::Vec3(corner.cwiseProduct(*size))));
+      s.areas.emplace_back(0);
+    }
+  }
+  return summaries;
+}
+
 /// The view with its framing and captions.
 ViewPanel framed_panel(const PictureSource& source, const render::ViewParameters& view, const SourceMeasures& m) {
   ViewPanel p{.source = source, .view = view};
-  p.framing = render::frame_trajectory(m.summaries, view, source.settings.key_frames);
+  p.framing = render::frame_trajectory(view.follow == "vesicle" ? m.summaries : with_cell(source, m.summaries), view,
+                                       source.settings.key_frames);
   p.captions = m.captions;
   p.painting = m.painting;
   p.laid = m.laid;

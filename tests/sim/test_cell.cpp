@@ -1,7 +1,8 @@
 // Scenes in periodic cells: the lattice under a shear, images among near pairs and gaps, and runs.
-#include "sim/measures/stresslet.h"
+#include "sim/measures/rheology.h"
 #include "sim/membrane/cell.h"
 #include "sim/suspension/gap.h"
+#include "sim/suspension/placements.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 
@@ -269,5 +270,76 @@ TEST_CASE(
     CHECK(std::abs(excess) < 6 * fraction);
     if (last != 0) CHECK(excess / last == Approx(1.0 / 8).epsilon(0.15));  // the next terms: the fifth power
     last = excess;
+  }
+}
+
+TEST_CASE("the stress of a suspension is the sum of stresslets over the cell, its angles have no sign") {
+  Scene s = scene_of({}, {4, 5, 2}, {shear(-2)});
+  std::vector<VesicleMeasures> vesicles(2);
+  vesicles[0].inclination_deg = 80;
+  vesicles[1].inclination_deg = -80;
+  vesicles[0].volume = 3;
+  vesicles[1].volume = 1;
+  vesicles[0].center = Vec3(1, 2, 3);
+  vesicles[1].center = Vec3(0, 4, -1);
+  std::vector<FlowMeasures> flow(2);
+  flow[0].stresslet << 6, 0, -3, 0, -2, 0, -3, 0, -4;
+  flow[1].stresslet = flow[0].stresslet / 3;
+  const std::vector<Vec3> first{Vec3(1, 1, 1), Vec3(0, 1, 1)};
+  SuspensionMeasures m = suspension_measures(s, vesicles, flow, first);
+  CHECK(m.volume_fraction == Approx(0.1));
+  CHECK(m.relative_viscosity == Approx(1 + 4 / (2.0 * 40)));
+  CHECK(m.normal_stress_1 == Approx(4.0 / 3 * 10 / (2 * 40)));
+  CHECK(m.normal_stress_2 == Approx(-4.0 / 3 * 2 / (2 * 40)));
+  CHECK(std::abs(m.inclination_mean) == Approx(90));
+  CHECK(m.inclination_spread == Approx(std::sqrt(-2 * std::log(std::cos(test::pi / 9))) * 90 / test::pi));
+  CHECK(m.displacement[1] == Approx(1));  // 1 and 3: 2 less and more than the mean by 1
+  CHECK(m.displacement[2] == Approx(4));
+  s.cell.size.reset();
+  m = suspension_measures(s, vesicles, flow, first);
+  CHECK(std::isnan(m.relative_viscosity));
+  CHECK(std::isnan(m.volume_fraction));
+}
+
+TEST_CASE("pairs of points at random have a distribution of 1, those of a lattice its distances, in any cells") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-8, 8);
+  Eigen::Matrix3d cell = Vec3(4, 5, 6).asDiagonal();
+  cell(0, 2) = 1.9;
+  PairDistribution pairs(Vec3(4, 5, 6), 4);
+  for (int state = 0; state < 40; ++state) {
+    std::vector<Vec3> points;
+    for (int k = 0; k < 40; ++k) points.emplace_back(cell * Vec3(uniform(random), uniform(random), uniform(random)));
+    pairs.add(points, cell);
+  }
+  for (const auto& row : pairs.rows())  // 31200 pairs, of which 0.4 % are in the first bin: 9 % by chance
+    CHECK(row.share == Approx(1).margin(row.from == 0 ? 0.3 : 0.1));
+  PairDistribution lattice(Vec3(4, 4, 4), 2);
+  lattice.add(std::vector{Vec3(0, 0, 0), Vec3(4, -8, 1.2), Vec3(0, 12, -1.2)}, Vec3(4, 4, 4).asDiagonal());
+  // Two pairs at 1.2 and one at 4 - 2.4.
+  CHECK(lattice.rows()[0].share == 0);
+  CHECK(lattice.rows()[1].share == Approx(3 / (3 / 64.0 * 4 * test::pi / 3 * 7)));
+}
+
+TEST_CASE("placements fill the cell and keep their distance from images, too") {
+  for (const auto& [kind, orientation] : {std::pair("box", "random"), {"lattice", "as-given"}}) {
+    VesicleParameters v = test::vesicle("prolate", 0.9, 6);
+    Scene s = scene_of({v}, {7, 5, 4.5}, {shear(1)});
+    PlacementParameters p;
+    p.kind = kind;
+    p.orientation = orientation;
+    p.count = kind == std::string("box") ? 8 : 12;
+    s.placements = {p};
+    const Scene full = placed(s);
+    REQUIRE(int(full.vesicles.size()) == p.count);
+    Plans plans;
+    std::vector<Coefficients> x;
+    for (const VesicleParameters& one : full.vesicles) {
+      x.push_back(initial_position(one));
+      CHECK((one.center.cwiseAbs().array() <= s.cell.size->array() / 2).all());
+    }
+    const Gap gap = smallest_gap(plans, x, cell_at(s, 0));
+    CHECK(!gap.crossing);
+    CHECK(gap.distance >= default_placement_gap * (1 - 1e-6));
   }
 }
