@@ -86,16 +86,17 @@ bool write_page(const Options& options, const sim::TrajectoryReader& trajectory,
 }
 
 /// A table that was asked for.
-struct Table {
+struct WantedTable {
   std::filesystem::path path;
   std::string (*text)(const sim::TrajectoryReader&, const sim::Scene&, std::int64_t first, std::int64_t end);
 };
-std::vector<Table> tables_of(const Options& o) {
-  const auto motion = [](const sim::TrajectoryReader& trajectory, const sim::Scene& scene, std::int64_t,
-                         std::int64_t) { return motion_csv(trajectory, scene); };
-  std::vector<Table> all;
-  for (const Table& table :
-       {Table{o.csv, csv_text}, {o.motion, motion}, {o.suspension, suspension_csv}, {o.pairs, pairs_csv}})
+std::vector<WantedTable> wanted_tables(const Options& o) {
+  const auto motion = [](const sim::TrajectoryReader& trajectory, const sim::Scene& scene, std::int64_t, std::int64_t) {
+    return motion_csv(trajectory, scene);
+  };
+  std::vector<WantedTable> all;
+  for (const WantedTable& table :
+       {WantedTable{o.csv, csv_text}, {o.motion, motion}, {o.suspension, suspension_csv}, {o.pairs, pairs_csv}})
     if (!table.path.empty()) all.push_back(table);
   return all;
 }
@@ -103,14 +104,14 @@ std::vector<Table> tables_of(const Options& o) {
 }  // namespace
 
 int export_states(const Options& options) {
-  const std::vector<Table> tables = tables_of(options);
+  const std::vector<WantedTable> tables = wanted_tables(options);
   if (tables.empty() && options.html.empty() && options.vtk.empty() && options.ply.empty())
     throw std::runtime_error(
         "say what to write: --csv FILE, --motion FILE, --suspension FILE, --pairs FILE, --html FILE, --vtk DIR or "
         "--ply DIR");
   if (!options.set.empty() && options.html.empty())
     throw std::runtime_error("--set changes the pictures of --html FILE; there are no others");
-  const auto to_output = [](const Table& table) { return table.path == "-"; };
+  const auto to_output = [](const WantedTable& table) { return table.path == "-"; };
   if (std::count_if(tables.begin(), tables.end(), to_output) > 1)
     throw std::runtime_error("only one table can go to standard output");
   if (!options.motion.empty() && options.time)
@@ -119,7 +120,7 @@ int export_states(const Options& options) {
   const auto [first, end] = chosen_states(trajectory, options.time);
   ResultFiles files(options.inputs, options.force);
   // Before the first of them is written.
-  for (const Table& table : tables) files.require(table.path);
+  for (const WantedTable& table : tables) files.require(table.path);
   if (!options.html.empty()) files.require(options.html);
   if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_series);
   for (std::int64_t k = first; k < end; ++k) {
@@ -129,7 +130,7 @@ int export_states(const Options& options) {
   }
   if (!tables.empty()) {
     const sim::Scene scene = scene_in(trajectory, options.inputs.front()).scene;
-    for (const Table& table : tables) files.write(table.path, table.text(trajectory, scene, first, end));
+    for (const WantedTable& table : tables) files.write(table.path, table.text(trajectory, scene, first, end));
   }
   if (!options.html.empty() && !write_page(options, trajectory, first, end, files)) return interrupted_status;
   struct Kind {

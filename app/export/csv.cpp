@@ -59,8 +59,7 @@ std::string header_row(const std::vector<CsvColumn>& columns) {
 }
 
 /// Measures of the vesicles in the first state, if there is any to write.
-std::vector<sim::VesicleMeasures> first_measures(sim::Plans& plans, const sim::TrajectoryReader& trajectory,
-                                                 bool any) {
+std::vector<sim::VesicleMeasures> first_measures(sim::Plans& plans, const sim::TrajectoryReader& trajectory, bool any) {
   std::vector<sim::VesicleMeasures> initial;
   if (any)
     for (const sim::VesicleState& v : trajectory.state(0).vesicles) initial.push_back(sim::measure(plans, v, 1, 1));

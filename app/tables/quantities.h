@@ -55,7 +55,7 @@ struct QuantityRow {
   const char* axis;  ///< label
   render::Scale scale;
   std::variant<StateCurves, StepCurves, SuspensionCurves> curves;  ///< at least one
-  bool per_vesicle = true;                       ///< else one curve for all
+  bool per_vesicle = true;                                         ///< else one curve for all
   bool differentiate = false;  ///< the values are the rates of change of the function, per time / rate
   Scaling scaling = Scaling::nothing;
   const char* bare_axis = nullptr;  ///< label without that scale

@@ -23,8 +23,7 @@ SuspensionMeasures suspension_measures(const Scene& scene, std::span<const Vesic
     volume += vesicles[k].volume;
     drift += (vesicles[k].center - first[k]) / n;
   }
-  for (std::size_t k = 0; k < vesicles.size(); ++k)
-    squares += (vesicles[k].center - first[k] - drift).cwiseAbs2() / n;
+  for (std::size_t k = 0; k < vesicles.size(); ++k) squares += (vesicles[k].center - first[k] - drift).cwiseAbs2() / n;
   m.displacement = squares;
   m.inclination_mean = std::arg(double_angle) / (2 * degree);
   m.inclination_spread = std::sqrt(-2 * std::log(std::min(1.0, std::abs(double_angle)))) / (2 * degree);

@@ -1,5 +1,6 @@
 // What a suspension in a periodic cell is as a material, from what its vesicles are: the particle stress is the sum of
-// their stresslets over the volume of the cell, so that with the shear rate, viscosity 1 outside and V the cell's volume
+// their stresslets over the volume of the cell, so that with the shear rate, viscosity 1 outside and V the cell's
+// volume
 //   eta_r = 1 + sum S_xz/(rate V),   N_1 = sum (S_xx - S_zz)/V,   N_2 = sum (S_zz - S_yy)/V.
 // Inclinations have no sign: their mean and spread are those of the double angle,
 //   exp(2 i theta) averaged = r exp(2 i mean),   spread = sqrt(-2 ln r)/2.
@@ -30,14 +31,15 @@ void visit(const SuspensionMeasures& m, V&& v) {
   v("normal_stress_2", "sum (S_zz - S_yy)/(|rate| V), likewise", m.normal_stress_2);
   v("inclination_mean", "mean inclination of all vesicles, degrees, in (-90, 90]", m.inclination_mean);
   v("inclination_spread", "its spread among them, degrees", m.inclination_spread);
-  v("displacement_y", "mean square of how far centres have moved along the vorticity since the first state, less the mean",
+  v("displacement_y",
+    "mean square of how far centres have moved along the vorticity since the first state, less the mean",
     m.displacement[1]);
   v("displacement_z", "... along the gradient of a shear", m.displacement[2]);
 }
 
 /// Of vesicles with these measures; `flow`: none where forces are not known. `first`: centres in the first state.
-SuspensionMeasures suspension_measures(const Scene&, std::span<const VesicleMeasures>, std::span<const FlowMeasures> flow,
-                                       std::span<const Vec3> first);
+SuspensionMeasures suspension_measures(const Scene&, std::span<const VesicleMeasures>,
+                                       std::span<const FlowMeasures> flow, std::span<const Vec3> first);
 
 /// Distances of all pairs, images included, in bins of equal width up to half of the shortest side of a cell.
 class PairDistribution {
