@@ -20,6 +20,7 @@ int compare(const Options&);  ///< 0 same, 1 different, 2 could not compare
 int list(const Options&);
 int reproduce(const Options&);
 int converge(const Options&);
+int sweep(const Options&);
 
 std::vector<std::string_view> reproduction_names();  ///< the items of `reproduce`
 
@@ -41,6 +42,9 @@ inline constexpr Command commands[] = {
      "", "SCENE", false,
      "to-study threads set variation results dry-run quiet figure-size theme font-size font text force-study",
      converge},
+    {"sweep", "a scene with all combinations of the values of some keys: a folder each, one table, the phase diagram",
+     "", "SCENE", false,
+     "to-sweep runs set axes results shard dry-run quiet figure-size theme font-size font text force-study", sweep},
     {"render", "the pictures alone: draws a trajectory again with another view or style; several side by side", "",
      "TRAJECTORY", true,
      "to-pictures processes set-pictures quiet gl shader-dir shard style size format time force-file", render},
