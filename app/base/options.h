@@ -20,8 +20,8 @@ struct Options {
   int jobs = 0;                               ///< -j; 0: as in the scene
   std::string gl = "auto";
   std::filesystem::path shader_dir;
-  int shard = 0, shards = 1;          ///< --shard 0/4: frames 0, 4, 8, ...
-  std::filesystem::path csv, motion;  ///< --csv, --motion; "-": standard output
+  int shard = 0, shards = 1;                             ///< --shard 0/4: frames 0, 4, 8, ...
+  std::filesystem::path csv, motion, suspension, pairs;  ///< --csv, ...; "-": standard output
   bool dry_run = false, quiet = false, resume = false, force = false, markdown = false;
   std::filesystem::path vtk, ply;                      ///< --vtk DIR, --ply DIR
   int latitudes = 64;                                  ///< of exported meshes

@@ -291,6 +291,14 @@ constexpr OptionRow option_rows[] = {
        app.add_option("--motion", o.motion,
                       "write a row per vesicle: its motion in shear, the period, means over it; - is standard output")
            ->type_name("FILE");
+       app.add_option("--suspension", o.suspension,
+                      "write a row per saved state: all vesicles together, their stress in a periodic cell; - is "
+                      "standard output")
+           ->type_name("FILE");
+       app.add_option("--pairs", o.pairs,
+                      "write how many pairs of vesicles a periodic cell holds at each distance, over those at random; "
+                      "- is standard output")
+           ->type_name("FILE");
        app.add_option("--html", o.html, "write a page that shows the trajectory in a browser, to turn and to play")
            ->type_name("FILE");
        app.add_option("--vtk", o.vtk, "write XML PolyData and a .pvd series")->type_name("DIR");

@@ -21,6 +21,7 @@
 #include "render/overlay/colour_bar.h"
 #include "render/scene/detail.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -85,6 +86,7 @@ struct VesicleSeries {
   PageSeries position, labels, tracers, field;
   std::vector<std::size_t> breaks = {};  ///< frames before which the parametrisation or the labels began anew
   std::int64_t relabelled = 0, laid = 0;
+  sim::Vec3 middle = sim::Vec3::Zero();  ///< of the last frame
 };
 
 class Recorder {
@@ -106,14 +108,20 @@ class Recorder {
     }
   }
 
-  void add(const sim::State& state, const Settings& settings) {
+  void add(const sim::State& unwrapped, const Settings& settings) {
+    const sim::State state = boxed(settings.scene, unwrapped);
     const render::StateSummary summary = render::summarize(state);
     const render::Camera camera = render::make_camera(panel_.framing, panel_.framing.moment(summary));
-    sim::Surroundings surroundings;
+    sim::Surroundings surroundings(sim::cell_at(settings.scene, state.time));
     for (std::size_t v = 0; v < all_.size(); ++v) {
       const sim::VesicleState& vesicle = state.vesicles[v];
       VesicleSeries& s = all_[v];
-      if (frames_ > 0 && (vesicle.relabelled != s.relabelled || vesicle.labels_laid != s.laid))
+      // In a periodic cell another image is shown once the vesicle has left the box.
+      const sim::Vec3 middle = vesicle.position.values.row(0).transpose() / std::sqrt(4 * std::numbers::pi);
+      const bool jumped = settings.scene.cell.size &&
+                          ((middle - s.middle).cwiseAbs().array() > settings.scene.cell.size->array() / 2).any();
+      s.middle = middle;
+      if (frames_ > 0 && (vesicle.relabelled != s.relabelled || vesicle.labels_laid != s.laid || jumped))
         s.breaks.push_back(frames_);
       s.relabelled = vesicle.relabelled;
       s.laid = vesicle.labels_laid;
@@ -321,7 +329,8 @@ void write_legend(Members& page, const ViewPanel& panel) {
 Settings page_settings(const Settings& settings, std::size_t vesicles) {
   Settings s = settings;
   s.view.views.clear();
-  s.view.style = sim::find_field(s.view.field).needs_neighbours && vesicles < 2 ? "opaque" : "field";
+  s.view.style =
+      sim::find_field(s.view.field).needs_neighbours && vesicles < 2 && !s.scene.cell.size ? "opaque" : "field";
   return s;
 }
 

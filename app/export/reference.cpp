@@ -130,6 +130,12 @@ std::string reference_page() {
   page += "\n## Columns of `export --motion`\n\nOne row per vesicle.\n\n| column | meaning |\n|---|---|\n";
   for (const CsvColumn& column : motion_columns())
     page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
+  page += "\n## Columns of `export --suspension`\n\nOne row per saved state.\n\n| column | meaning |\n|---|---|\n";
+  for (const CsvColumn& column : suspension_columns())
+    page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
+  page += "\n## Columns of `export --pairs`\n\nOne row per bin of distances.\n\n| column | meaning |\n|---|---|\n";
+  for (const CsvColumn& column : pair_columns())
+    page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
   page +=
       "\n## Diagnostics of each step\n\nIn the trajectory, group `steps`; those of a vesicle have one number a "
       "vesicle.\n\n"

@@ -6,6 +6,7 @@
 #include "render/core/colormap.h"
 #include "render/core/style.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 
 #include <fmt/format.h>
 
@@ -203,12 +204,12 @@ Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vecto
   if (!render::find_style(view.style).field) return p;
 
   p.field = &sim::find_field(view.field);
-  if (p.field->needs_neighbours && first.vesicles.size() < 2)
+  if (p.field->needs_neighbours && first.vesicles.size() < 2 && !settings.scene.cell.size)
     throw std::invalid_argument(fmt::format("the field '{}' needs two vesicles or more", p.field->name));
   std::vector<double> values, later;  // of what is shown, and of that after the start
   sim::Plans plans;
   const auto add = [&](const sim::State& state, std::vector<double>& to) {
-    sim::Surroundings surroundings;
+    sim::Surroundings surroundings(sim::cell_at(settings.scene, state.time));
     for (std::size_t v = 0; v < state.vesicles.size(); ++v)
       collect(painted_field(plans, p, settings, state, v, surroundings), to);
   };

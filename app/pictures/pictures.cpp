@@ -1,6 +1,7 @@
 #include "app/pictures/pictures.h"
 
 #include "app/pictures/flow_overlays.h"
+#include "app/pictures/instants.h"
 #include "app/pictures/overlays.h"
 
 #include "render/core/style.h"
@@ -10,6 +11,7 @@
 #include "render/scene/hidden.h"
 #include "render/scene/occlusion.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +35,7 @@ std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const si
   if (style.occluded && p.view.occlusion > 0)
     for (const render::Sketch& sketch : sketches) occluders.push_back(render::occluder_of(sketch));
   std::vector<render::Body> bodies;
-  sim::Surroundings surroundings;
+  sim::Surroundings surroundings(sim::cell_at(p.source.settings.scene, state.time));
   for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
     const sim::VesicleState& vesicle = state.vesicles[v];
     const render::Sketch& sketch = sketches[v];
@@ -68,6 +70,7 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   if (p.view.inset) frame.inset = inset_of(p, state, frame.camera, moment.centre);
   frame.captions = captions_of(p, state.time);
   frame.flow_lines = flow_lines_of(studio.plans, p, state, frame.camera, render::lay_out(frame, studio.font).boxes());
+  for (render::FlowLines::Line& edge : edges_of_cell(p.source.settings.scene)) frame.flow_lines.lines.push_back(edge);
   return frame;
 }
 
@@ -121,7 +124,7 @@ Studio::Studio(const render::GlChoice& choice, const std::filesystem::path& shad
 render::Image draw_picture(Studio& studio, const Production& production, double time) {
   std::vector<render::Image> parts;
   for (const ViewPanel& panel : production.panels) {
-    const sim::State state = state_at(panel.source.trajectory, time);
+    const sim::State state = boxed(panel.source.settings.scene, state_at(panel.source.trajectory, time));
     parts.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
   render::Image whole = parts.size() == 1 && !production.plots ? std::move(parts.front()) : joined(production, parts);
@@ -139,7 +142,7 @@ DrawnStills draw_stills(const sim::TrajectoryReader& trajectory, const Settings&
   DrawnStills drawn;
   if (painting.field != nullptr || plain.view.colour_by != "order") drawn.legend = painting.legend;
   for (const Still& still : stills) {
-    const sim::State state = state_at(trajectory, still.time);
+    const sim::State state = boxed(settings.scene, state_at(trajectory, still.time));
     const ViewPanel panel = panel_of(still, {trajectory, plain}, painting, state);
     drawn.images.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }

@@ -428,6 +428,25 @@ void visit(P& p, V&& v) {
     p.gravity);
 }
 
+/// A periodic cell round the origin, whose copies fill space. A shear takes its upper and lower neighbours along.
+struct CellParameters {
+  std::optional<Vec3> size;
+};
+
+template <class P, class V>
+requires std::same_as<std::remove_const_t<P>, CellParameters>
+void visit(P& p, V&& v) {
+  v(Parameter{.name = "size",
+              .unit = "length",
+              .meaning =
+                  "lengths along x, y and z of the cell round the origin that repeats in all directions; a shear "
+                  "takes the copies above and below along",
+              .minimum = 0,
+              .exclusive_minimum = true,
+              .when_absent = "unbounded fluid"},
+    p.size);
+}
+
 /// Many copies of the scene's last vesicle, so that a scene says "64 vesicles" in three lines. Reading a scene turns a
 /// placement into vesicles; the resolved scene lists them.
 struct PlacementParameters {
@@ -501,6 +520,7 @@ struct Scene {
   std::vector<PlacementParameters> placements;  ///< empty once they have been turned into vesicles
   NumericsParameters numerics;
   BuoyancyParameters buoyancy;
+  CellParameters cell;
 };
 
 /// A table of the scene file.
@@ -521,6 +541,7 @@ void visit_sections(S& scene, V&& v) {
     scene.placements);
   v(Section{"numerics", "how accurately, and by which means", false}, scene.numerics);
   v(Section{"buoyancy", "sedimentation", false}, scene.buoyancy);
+  v(Section{"cell", "periodic cell, of whose copies space is full", false}, scene.cell);
 }
 
 }  // namespace sim

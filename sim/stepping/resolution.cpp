@@ -1,6 +1,7 @@
 #include "sim/stepping/resolution.h"
 
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 #include "sim/suspension/gap.h"
 
 #include <algorithm>
@@ -80,7 +81,8 @@ std::vector<SpaceError> space_errors(const Model& s, const Dynamics& before, con
   double largest = 0;
   for (const VesicleDynamics& v : after.vesicles) largest = std::max(largest, area_radius({v.area, v.volume}));
   constexpr double far = 1;  // from there on no film asks for more than the least of degrees
-  const std::vector<double> gaps = gaps_to_neighbours(s.plans, positions(after), far * largest);
+  const std::vector<double> gaps =
+      gaps_to_neighbours(s.plans, positions(after), far * largest, cell_at(s.scene, after.time));
   // As a rate it is large where it is large beside the tolerance, however slow the motion.
   const double motion = 2 * allowed_error(s, before, dt) / (dt * tolerance_of(s.scene.time));
   std::vector<SpaceError> errors;

@@ -290,3 +290,18 @@ TEST_CASE("a poster beyond the end of the scene is refused", "[scene]") {
   CHECK_THAT(error_of(good + "[movie]\nposter = 2.00001\n"), Contains("at most time.end, 2, not 2.00001"));
   CHECK(parse_scene(good + "[movie]\nposter = 2\n", "s.toml", ".").movie.poster == 2.0);
 }
+
+TEST_CASE("a periodic cell takes flows that keep it one, and sets the volume fraction itself", "[scene]") {
+  const std::string cell = "[cell]\nsize = [6, 5, 4.5]\n";
+  CHECK(error_of(good + cell) == "");
+  CHECK(*parse_scene(good + cell, "s.toml", ".").scene.cell.size == sim::Vec3(6, 5, 4.5));
+  CHECK_THAT(error_of(good + "[cell]\nsize = [6, 5, 0]\n"), Contains("s.toml:16:8") && Contains("'size'"));
+  CHECK_THAT(error_of(good + "[cell]\nsice = [6, 5, 4]\n"), Contains("did you mean 'size'"));
+  CHECK_THAT(error_of(replaced("kind = \"shear\"\nrate = 1.0", "kind = \"extension\"") + cell),
+             Contains("s.toml:4:8") && Contains("'extension' does not keep a [cell] periodic"));
+  CHECK_THAT(error_of(good + cell + "[numerics]\nfar_field = \"direct\"\n"),
+             Contains("s.toml:18:13") && Contains("leave it \"auto\""));
+  CHECK(error_of(good + cell + "[placement]\nkind = \"box\"\ncount = 2\n") == "");
+  CHECK_THAT(error_of(good + cell + "[placement]\nkind = \"box\"\ncount = 2\nvolume_fraction = 0.05\n"),
+             Contains("s.toml:20:19") && Contains("leave 'volume_fraction' out"));
+}
