@@ -1,7 +1,12 @@
 #include "app/base/share.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <optional>
+#include <stdexcept>
 #include <string_view>
 
 namespace app {
@@ -18,21 +23,39 @@ std::optional<int> number_in(const char* variable) {
   return value;
 }
 
-std::optional<Share> share_in(const char* index, const char* count, int first = 0) {
+std::optional<Share> share_in(const char* index, const char* count) {
   const std::optional<int> i = number_in(index), n = number_in(count);
-  if (!i || !n || *i < first || *i - first >= *n) return {};
-  return Share{*i - first, *n};
+  if (!i || !n || *i < 0 || *i >= *n) return {};
+  return Share{*i, *n};
+}
+
+std::optional<Share> task_of_array() {
+  const std::optional<int> id = number_in("SLURM_ARRAY_TASK_ID"), count = number_in("SLURM_ARRAY_TASK_COUNT");
+  if (!id || !count) return {};
+  const int first = number_in("SLURM_ARRAY_TASK_MIN").value_or(0);
+  const int step = std::max(1, number_in("SLURM_ARRAY_TASK_STEP").value_or(1));
+  const long long last = number_in("SLURM_ARRAY_TASK_MAX").value_or(first + step * (*count - 1));
+  const long long offset = static_cast<long long>(*id) - first;
+  const bool even = last - first == static_cast<long long>(step) * (*count - 1) && offset % step == 0;
+  if (!even || offset < 0 || offset / step >= *count)
+    throw std::runtime_error("the numbers of this Slurm array are not evenly spaced, so they tell no shares; give i/n");
+  return Share{static_cast<int>(offset / step), *count};
 }
 
 }  // namespace
 
-std::optional<Share> share_of_environment() {
-  const std::optional<Share> task =
-      share_in("SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", number_in("SLURM_ARRAY_TASK_MIN").value_or(0));
+Share share_of_environment() {
+  const std::optional<Share> task = task_of_array();
   std::optional<Share> rank = share_in("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE");
   if (!rank) rank = share_in("PMI_RANK", "PMI_SIZE");
-  if (!rank) rank = share_in("SLURM_PROCID", "SLURM_NTASKS");
-  if (!task || !rank) return task ? task : rank;
+  // A batch script has SLURM_PROCID without srun, too, but no tasks of a step.
+  if (!rank) rank = share_in("SLURM_PROCID", "SLURM_STEP_NUM_TASKS");
+  if (!task && !rank)
+    throw std::runtime_error("there is neither a rank of MPI nor a task of a Slurm array here; give i/n");
+  if (!task || !rank) return task ? *task : *rank;
+  constexpr int most = 1'000'000;
+  if (static_cast<long long>(task->count) * rank->count > most)
+    throw std::runtime_error(fmt::format("tasks and ranks make more than {} shares; give i/n", most));
   return Share{task->index * rank->count + rank->index, task->count * rank->count};
 }
 

@@ -48,12 +48,13 @@ bool read_two(std::string_view text, char between, int& first, int& second) {
 
 void parse_shard(Options& options, const std::string& text) {
   if (text == "auto") {
-    const std::optional<Share> share = share_of_environment();
-    if (!share)
-      throw CLI::ValidationError("--shard",
-                                 "there is neither a rank of MPI nor a task of a Slurm array here; give i/n");
-    options.shard = share->index;
-    options.shards = share->count;
+    try {
+      const Share share = share_of_environment();
+      options.shard = share.index;
+      options.shards = share.count;
+    } catch (const std::runtime_error& error) {
+      throw CLI::ValidationError("--shard", error.what());
+    }
     return;
   }
   if (read_two(text, '/', options.shard, options.shards) && 0 <= options.shard && options.shard < options.shards)

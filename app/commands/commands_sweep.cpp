@@ -11,6 +11,7 @@
 #include "app/scene/scene_file.h"
 #include "app/scene/scene_text.h"
 #include "app/sweep/table.h"
+#include "app/tables/results.h"
 
 #include "sim/core/derived.h"
 #include "sim/membrane/flows.h"
@@ -18,6 +19,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
+#include <variant>
 
 namespace app {
 
@@ -49,16 +53,42 @@ Settings scene_at(const Options& options, const std::vector<SweepAxis>& axes, co
   }
 }
 
+/// Keys of which one overrides another, or one value written in two ways, would make one scene twice.
+void check_distinct(const Options& options, const Sweep& sweep) {
+  for (const SweepAxis& axis : sweep.axes)
+    for (const std::string& change : options.set)
+      if (change.substr(0, change.find('=')) == axis.key)
+        throw std::runtime_error(fmt::format("--set {} and --vary {} are the same key", change, axis.key));
+  std::map<std::string, const SweepPoint*> scenes;
+  for (const SweepRun& run : sweep.runs)
+    if (const auto [other, fresh] = scenes.try_emplace(write_scene(run.settings), &run.point); !fresh)
+      throw std::runtime_error(
+          fmt::format("the runs {} and {} have one scene: a value is there twice, or one key overrides another",
+                      other->second->name, run.point.name));
+}
+
+/// Results that compare runs with the most accurate of them, which a sweep does not have, are refused.
+std::vector<AskedResult> asked_of(const Options& options, const sim::Scene& scene) {
+  std::vector<AskedResult> asked = read_results(options.quantities, scene);
+  for (const AskedResult& one : asked)
+    if (const ResultRow* row = sim::find_row(results(), one.name))
+      if (std::holds_alternative<OfMembranes>(row->source))
+        throw std::runtime_error(
+            fmt::format("--quantities {}: a distance from a more accurate run, which is for converge", one.name));
+  return asked;
+}
+
 Sweep sweep_of(const Options& options, const fs::path& folder) {
   Sweep sweep{read_scene(options.inputs.front(), options.set), {}, {}, {}};
   for (const std::string& text : options.axes) sweep.axes.push_back(read_axis(text));
-  if (!options.quantities.empty()) sweep.asked = read_results(options.quantities, sweep.scene.scene);
+  if (!options.quantities.empty()) sweep.asked = asked_of(options, sweep.scene.scene);
   for (SweepPoint& point : points_of(sweep.axes)) {
     stop_if_interrupted();
     Settings settings = scene_at(options, sweep.axes, point);
     const fs::path trajectory = folder / point.name / "trajectory.h5";
     sweep.runs.push_back({std::move(point), std::move(settings), trajectory});
   }
+  check_distinct(options, sweep);
   return sweep;
 }
 
@@ -88,20 +118,73 @@ bool simulate_run(const SweepRun& run, const Options& options, const ProgressSpa
   return !report.interrupted;
 }
 
-/// The runs of this shard, one after the other. False: interrupted.
-bool simulate_here(const Sweep& sweep, const Options& options) {
+/// Why runs could not be made, by their names.
+using Failures = std::map<std::string, std::string>;
+
+/// The runs of this shard, one after the other; those that cannot be made are told and left out. False: interrupted.
+bool simulate_here(const Sweep& sweep, const Options& options, Failures& failures) {
   std::vector<const SweepRun*> mine;
   for (std::size_t k = 0; k < sweep.runs.size(); ++k)
     if (k % static_cast<std::size_t>(options.shards) == static_cast<std::size_t>(options.shard))
       mine.push_back(&sweep.runs[k]);
   for (std::size_t k = 0; k < mine.size(); ++k) {
-    const ProgressSpan span{.what = fmt::format("{}, run {} of {}", mine[k]->point.name, k + 1, mine.size()),
+    const std::string& name = mine[k]->point.name;
+    const ProgressSpan span{.what = fmt::format("{}, run {} of {}", name, k + 1, mine.size()),
                             .first = static_cast<double>(k) / static_cast<double>(mine.size()),
                             .share = 1.0 / static_cast<double>(mine.size()),
-                            .name = mine[k]->point.name};
-    if (interrupted() || !simulate_run(*mine[k], options, span)) return false;
+                            .name = name};
+    try {
+      if (interrupted() || !simulate_run(*mine[k], options, span)) return false;
+    } catch (const std::exception& error) {
+      failures.emplace(name, error.what());
+      tell(fmt::format("{}: {}", name, error.what()));
+    }
   }
   return true;
+}
+
+/// All runs, by processes; what they left is tried once more here, to know why. False: interrupted.
+bool simulate_side_by_side(const Sweep& sweep, const Options& options, const fs::path& folder, Failures& failures) {
+  if (!simulate_in_processes(options, folder, sweep.runs)) return false;
+  Options alone = options;
+  alone.quiet = true;
+  for (const SweepRun& run : sweep.runs) try {
+      if (outcome_of(run).kind == RunOutcome::Kind::missing && !simulate_run(run, alone, {})) return false;
+    } catch (const std::exception& error) {
+      failures.emplace(run.point.name, error.what());
+    }
+  return true;
+}
+
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const Failures& failures) {
+  std::vector<RunOutcome> outcomes;
+  for (const SweepRun& run : sweep.runs) {
+    RunOutcome& outcome = outcomes.emplace_back(outcome_of(run));
+    const auto failure = failures.find(run.point.name);
+    if (outcome.kind == RunOutcome::Kind::missing && failure != failures.end()) outcome.reason = failure->second;
+  }
+  return outcomes;
+}
+
+/// What an earlier sweep left beside its runs.
+void remove_outdated(const fs::path& folder, bool diagram_only) {
+  if (!fs::is_directory(folder)) return;
+  OwnedFiles files(folder);
+  for (const char* extension : render::figure_extensions) files.remove(fmt::format("phase-diagram{}", extension));
+  if (diagram_only) return;
+  for (const char* name : {"sweep.csv", "sweep.md"}) files.remove(name);
+}
+
+/// The folders of runs, before any of them is made: links are not followed out of the folder.
+void check_folders(const Sweep& sweep, const fs::path& folder, const Options& options) {
+  const OwnedFiles files(folder);
+  for (const SweepRun& run : sweep.runs) {
+    files.require_folder(run.point.name);
+    if (fs::is_symlink(run.trajectory))
+      throw std::runtime_error(fmt::format("'{}' is a link, and links are not followed out of a folder of results",
+                                           run.trajectory.string()));
+    if (fs::exists(run.trajectory) && !options.force) check_further(run.settings, run.trajectory);
+  }
 }
 
 std::string command_text(const Options& options) {
@@ -128,11 +211,17 @@ std::vector<fs::path> draw_phase_diagram(const Sweep& sweep, const fs::path& ste
   trajectories.reserve(sweep.runs.size());
   std::vector<FigureSource> sources;
   for (const SweepRun& run : sweep.runs)
-    sources.push_back(
-        {trajectories.emplace_back(run.trajectory), run.settings, run.point.name, run.trajectory.string()});
+    if (fs::exists(run.trajectory))
+      sources.push_back(
+          {trajectories.emplace_back(run.trajectory), run.settings, run.point.name, run.trajectory.string()});
   render::FigureParameters figure = sweep.scene.figures.empty() ? render::FigureParameters{} : sweep.scene.figures[0];
   figure.kind = "phase-diagram";
-  figure.axes = {sweep.axes[0].key, sweep.axes[1].key};
+  figure.axes.clear();
+  for (const SweepAxis& axis : sweep.axes) {  // of the first vesicle, whatever its number is called
+    std::string key = axis.key;
+    if (const std::size_t at = key.find(".0."); at != std::string::npos) key.erase(at, 2);
+    figure.axes.push_back(key);
+  }
   try {
     return draw_figure(sources, figure, stem, files.writer_inside(), options);
   } catch (const std::invalid_argument& error) {
@@ -147,32 +236,29 @@ std::string page_of(const Sweep& sweep, const SweepTable& table, const std::stri
   if (diagram) page += "![Motions over the two keys](phase-diagram.png)\n\n";
   page += markdown_text(short_table(table)) + "\nAll columns are in `sweep.csv`, each trajectory in its folder.\n";
   for (const SweepRow& row : table.rows)
-    if (row.vesicle == 0 && row.outcome.kind == RunOutcome::Kind::stopped) {
+    if (row.vesicle == 0 && row.outcome.kind != RunOutcome::Kind::finished) {
       std::string where;
       for (std::size_t a = 0; a < row.values.size(); ++a)
         where += fmt::format("{}{} = {}", a > 0 ? ", " : "", table.axes[a], row.values[a]);
-      page += fmt::format("\n{}: stopped at {}\n", printable(where), printable(row.outcome.reason));
+      page += fmt::format("\n{}: {}{}\n", printable(where),
+                          row.outcome.kind == RunOutcome::Kind::stopped ? "stopped at " : "",
+                          printable(row.outcome.reason));
     }
   return page;
 }
 
-/// Tells of runs that did not reach the end; the status of the command.
-int told_outcomes(const Sweep& sweep) {
+/// Tells of runs that did not reach the end, those of `told` apart; the status of the command.
+int told_outcomes(const Sweep& sweep, const std::vector<RunOutcome>& outcomes) {
   constexpr std::size_t most_told = 8;
-  std::vector<std::string> stopped, missing;
-  for (const SweepRun& run : sweep.runs) {
-    const RunOutcome outcome = outcome_of(run);
-    if (outcome.kind == RunOutcome::Kind::stopped) stopped.push_back(run.point.name + " stopped at " + outcome.reason);
-    if (outcome.kind == RunOutcome::Kind::unfinished) missing.push_back(run.point.name);
+  std::size_t stopped = 0, missing = 0;
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    missing += outcomes[k].kind == RunOutcome::Kind::missing;
+    if (outcomes[k].kind == RunOutcome::Kind::stopped && ++stopped <= most_told)
+      tell(fmt::format("{} stopped at {}", sweep.runs[k].point.name, outcomes[k].reason));
   }
-  for (std::size_t k = 0; k < std::min(stopped.size(), most_told); ++k) tell(stopped[k]);
-  if (stopped.size() > most_told) tell(fmt::format("... and {} more stopped", stopped.size() - most_told));
-  if (!missing.empty())
-    throw std::runtime_error(
-        fmt::format("{} of {} runs are not at their end, the first of them {}; the same command "
-                    "continues",
-                    missing.size(), sweep.runs.size(), missing.front()));
-  return stopped.empty() ? 0 : 1;
+  if (stopped > most_told) tell(fmt::format("... and {} more stopped", stopped - most_told));
+  if (missing > 0) tell(fmt::format("{} of {} runs could not be made", missing, outcomes.size()));
+  return stopped + missing > 0 ? 1 : 0;
 }
 
 }  // namespace
@@ -193,14 +279,18 @@ int sweep(const Options& options) {
   const bool with_diagram = has_phase_diagram(sweep);
   if (with_diagram)
     for (const char* extension : render::figure_extensions) files.require_inside(diagram.string() + extension);
-  for (const SweepRun& run : sweep.runs)  // before hours of work
-    if (fs::exists(run.trajectory) && !options.force) check_further(run.settings, run.trajectory);
+  check_folders(sweep, folder, options);  // before hours of work
 
   const bool side_by_side = options.jobs > 1 && options.shards == 1 && sweep.runs.size() > 1;
   std::optional<FolderLock> lock;  // processes take their own
   if (!side_by_side) lock.emplace(folder, options.shard, options.shards);
+  const bool complete = std::all_of(sweep.runs.begin(), sweep.runs.end(), [](const SweepRun& run) {
+    return outcome_of(run).kind == RunOutcome::Kind::finished;
+  });
+  if (!complete && options.shard == 0) remove_outdated(folder, false);
+  Failures failures;
   const bool through =
-      side_by_side ? simulate_in_processes(options, folder, sweep.runs) : simulate_here(sweep, options);
+      side_by_side ? simulate_side_by_side(sweep, options, folder, failures) : simulate_here(sweep, options, failures);
   if (!through) {
     if (options.shards == 1 || !options.quiet) tell("interrupted; the same command continues");
     return interrupted_status;
@@ -209,11 +299,13 @@ int sweep(const Options& options) {
     if (!options.quiet)
       fmt::print("shard {}/{} is done; when all are, the same command without --shard writes the table\n",
                  options.shard, options.shards);
-    return 0;
+    return failures.empty() ? 0 : 1;
   }
   if (!lock) lock.emplace(folder);
-  const int status = told_outcomes(sweep);
-  const SweepTable table = table_of(sweep.axes, sweep.runs, sweep.asked);
+  const std::vector<RunOutcome> outcomes = outcomes_of(sweep, failures);
+  const int status = told_outcomes(sweep, outcomes);
+  const SweepTable table = table_of(sweep.axes, sweep.runs, outcomes, sweep.asked, options.quiet);
+  remove_outdated(folder, true);
   std::vector<fs::path> written;
   if (with_diagram) written = draw_phase_diagram(sweep, diagram, files, options);
   files.writer_inside()(table_file, csv_text(full_table(table)));
@@ -222,6 +314,7 @@ int sweep(const Options& options) {
   written.insert(written.end(), {table_file, page});
   if (!options.quiet) {
     fmt::print("{}\n", plain_text(short_table(table)));
+    if (!table.why_untold.empty()) fmt::print("untold: {}\n\n", table.why_untold);
     for (const fs::path& file : written) fmt::print("{}\n", printable(file.string()));
   }
   return status;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -98,6 +99,13 @@ std::string plain(std::string_view value) {
   return text;
 }
 
+/// Eight digits that tell texts apart (FNV-1a).
+std::string mark_of(std::string_view text) {
+  std::uint32_t mark = 2166136261u;
+  for (const char c : text) mark = (mark ^ static_cast<unsigned char>(c)) * 16777619u;
+  return fmt::format("{:08x}", mark);
+}
+
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
 }  // namespace
@@ -150,7 +158,15 @@ std::vector<SweepPoint> points_of(const std::vector<SweepAxis>& axes) {
       point.values[a] = axes[a].values[rest % axes[a].values.size()];
     for (std::size_t a = 0; a < axes.size(); ++a)
       point.name += fmt::format("{}{}-{}", a > 0 ? "_" : "", plain(short_name(axes, a)), plain(point.values[a]));
-    if (!names.insert(point.name).second) point.name += fmt::format("_{}", k);
+    constexpr std::size_t longest = 200;  // of names that file systems take
+    std::string exact;
+    for (const std::string& change : changes_at(axes, point)) exact += change + "\n";
+    if (point.name.size() > longest) point.name = fmt::format("{}_{}", point.name.substr(0, longest), mark_of(exact));
+    const auto plainly = [](const std::string& value) { return plain(value) == value; };
+    if (!std::all_of(point.values.begin(), point.values.end(), plainly))
+      point.name += fmt::format("_{}", mark_of(exact));
+    if (!names.insert(point.name).second)
+      throw std::runtime_error(fmt::format("two runs would have the folder '{}'", point.name));
   }
   return points;
 }

@@ -19,7 +19,8 @@ SweepAxis read_axis(std::string_view text);
 
 struct SweepPoint {
   std::vector<std::string> values;  ///< one an axis
-  std::string name;                 ///< of its folder, "viscosity_contrast-5_reduced_volume-0.8"
+  /// Of its folder, "viscosity_contrast-5_reduced_volume-0.8"; with eight digits behind it where values do not fit.
+  std::string name;
 };
 /// Throws std::runtime_error for the same key twice and for more than 10,000 points.
 std::vector<SweepPoint> points_of(const std::vector<SweepAxis>&);

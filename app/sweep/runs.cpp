@@ -3,6 +3,7 @@
 #include "app/base/child.h"
 #include "app/base/interrupt.h"
 #include "app/base/progress.h"
+#include "app/export/simulation.h"
 
 #include "sim/trajectory/trajectory.h"
 
@@ -35,6 +36,12 @@ std::vector<std::string> words_of(const Options& options, const std::filesystem:
 RunOutcome outcome_of(const SweepRun& run) {
   RunOutcome outcome;
   if (!std::filesystem::exists(run.trajectory)) return outcome;
+  try {
+    check_further(run.settings, run.trajectory);
+  } catch (const std::runtime_error& error) {
+    outcome.reason = error.what();
+    return outcome;
+  }
   const sim::TrajectoryReader file(run.trajectory);
   if (file.count() == 0) return outcome;
   outcome.time = file.time(file.count() - 1);

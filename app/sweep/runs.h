@@ -16,10 +16,11 @@ struct SweepRun {
 };
 
 struct RunOutcome {
-  enum class Kind { finished, stopped, unfinished } kind = Kind::unfinished;
+  enum class Kind { finished, stopped, missing } kind = Kind::missing;
   double time = 0;     ///< of the last state
-  std::string reason;  ///< why it stopped
+  std::string reason;  ///< why it stopped, or why it has no states
 };
+/// A trajectory of another scene is none.
 RunOutcome outcome_of(const SweepRun&);
 
 /// This program once a run, the command line of `options` with --shard, options.jobs at a time. False: interrupted.

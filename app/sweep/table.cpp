@@ -2,6 +2,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/base/printable.h"
+#include "app/base/progress.h"
 #include "app/figures/motions.h"
 
 #include "sim/measures/statement.h"
@@ -58,8 +59,8 @@ std::string_view word_of(Kind kind) {
       return "finished";
     case Kind::stopped:
       return "stopped";
-    case Kind::unfinished:
-      return "unfinished";
+    case Kind::missing:
+      return "missing";
   }
   return {};
 }
@@ -67,17 +68,23 @@ std::string_view word_of(Kind kind) {
 }  // namespace
 
 SweepTable table_of(const std::vector<SweepAxis>& axes, const std::vector<SweepRun>& runs,
-                    const std::vector<AskedResult>& asked) {
+                    const std::vector<RunOutcome>& outcomes, const std::vector<AskedResult>& asked, bool quiet) {
   SweepTable table;
-  for (std::size_t a = 0; a < axes.size(); ++a) table.axes.push_back(axes[a].key);
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    table.axes.push_back(axes[a].key);
+    table.short_axes.push_back(short_name(axes, a));
+  }
   visit(VesicleMotion{}, [&](const char* name, const char*, double) { table.measures.emplace_back(name); });
   table.measures.insert(table.measures.end(), statement_names().begin(), statement_names().end());
-  for (const SweepRun& run : runs) {
+  Progress progress("measuring", quiet);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
     stop_if_interrupted();
+    progress.show(static_cast<double>(r) / static_cast<double>(runs.size()), runs[r].point.name);
+    const SweepRun& run = runs[r];
     SweepRow row;
     row.values = run.point.values;
-    row.outcome = outcome_of(run);
-    if (!std::filesystem::exists(run.trajectory)) {
+    row.outcome = outcomes[r];
+    if (row.outcome.kind == Kind::missing) {
       row.measures.assign(table.measures.size(), std::nan(""));
       table.rows.push_back(std::move(row));
       continue;
@@ -87,21 +94,27 @@ SweepTable table_of(const std::vector<SweepAxis>& axes, const std::vector<SweepR
     const std::vector<double> statement = statement_of(file.steps());
     const auto results = asked.empty() ? std::vector<std::pair<std::string, double>>{}
                                        : results_of({file, run.settings, {}, run.trajectory.string()}, asked);
-    for (const auto& [name, value] : results) {
-      auto at = std::find(table.asked.begin(), table.asked.end(), name);
-      if (at == table.asked.end()) at = table.asked.insert(at, name);
-      const auto k = static_cast<std::size_t>(at - table.asked.begin());
-      if (row.asked.size() <= k) row.asked.resize(k + 1, std::nan(""));
-      row.asked[k] = value;
-    }
     row.vesicles = static_cast<int>(motions.size());
     for (std::size_t v = 0; v < motions.size(); ++v) {
       row.vesicle = static_cast<int>(v);
-      row.motion =
-          motions[v].motion == sim::AxisMotion::untold ? "untold" : std::string(sim::name_of(motions[v].motion));
+      const bool told = motions[v].motion != sim::AxisMotion::untold;
+      row.motion = told ? std::string(sim::name_of(motions[v].motion)) : "untold";
+      if (!told && table.why_untold.empty()) table.why_untold = motions[v].why;
       row.measures.clear();
       visit(motions[v], [&](const char*, const char*, double value) { row.measures.push_back(value); });
       row.measures.insert(row.measures.end(), statement.begin(), statement.end());
+      row.asked.assign(table.asked.size(), std::nan(""));
+      // Results of another vesicle are in its own row.
+      const std::string own = fmt::format("vesicle.{}.", v);
+      for (const auto& [name, value] : results) {
+        if (name.starts_with("vesicle.") && !name.starts_with(own)) continue;
+        const std::string column = name.starts_with(own) ? name.substr(own.size()) : name;
+        auto at = std::find(table.asked.begin(), table.asked.end(), column);
+        if (at == table.asked.end()) at = table.asked.insert(at, column);
+        const auto k = static_cast<std::size_t>(at - table.asked.begin());
+        if (row.asked.size() <= k) row.asked.resize(k + 1, std::nan(""));
+        row.asked[k] = value;
+      }
       table.rows.push_back(row);
     }
   }
@@ -139,8 +152,7 @@ TextTable short_table(const SweepTable& table) {
   const bool several =
       std::any_of(table.rows.begin(), table.rows.end(), [](const SweepRow& row) { return row.vesicles > 1; });
   TextTable text;
-  text.columns = table.axes;
-  for (std::string& name : text.columns) name = name.substr(name.rfind('.') + 1);
+  text.columns = table.short_axes;
   if (several) text.columns.emplace_back("vesicle");
   text.columns.emplace_back("motion");
   for (const std::size_t k : columns) text.columns.push_back(table.measures[k]);
@@ -148,10 +160,12 @@ TextTable short_table(const SweepTable& table) {
   for (const SweepRow& row : table.rows) {
     std::vector<std::string> cells = row.values;
     if (several) cells.push_back(fmt::format("{}", row.vesicle));
-    cells.push_back(row.outcome.kind == Kind::finished
-                        ? row.motion
-                        : fmt::format("{}{}{} at {:.4g}", row.motion, row.motion.empty() ? "" : ", ",
-                                      word_of(row.outcome.kind), row.outcome.time));
+    if (row.outcome.kind == Kind::finished)
+      cells.push_back(row.motion);
+    else if (row.outcome.kind == Kind::stopped)
+      cells.push_back(fmt::format("{}, stopped at {:.4g}", row.motion, row.outcome.time));
+    else
+      cells.emplace_back("not made");
     for (const std::size_t k : columns) cells.push_back(few_digits(row.measures[k]));
     for (const double value : row.asked) cells.push_back(few_digits(value));
     text.rows.push_back(std::move(cells));

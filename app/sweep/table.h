@@ -19,12 +19,15 @@ struct SweepRow {
   RunOutcome outcome;
 };
 struct SweepTable {
-  std::vector<std::string> axes;      ///< names of columns
-  std::vector<std::string> measures;  ///< names of SweepRow::measures
-  std::vector<std::string> asked;     ///< names of SweepRow::asked
+  std::vector<std::string> axes, short_axes;  ///< names of columns
+  std::vector<std::string> measures;          ///< names of SweepRow::measures
+  std::vector<std::string> asked;             ///< names of SweepRow::asked
   std::vector<SweepRow> rows;
+  std::string why_untold;  ///< of the first motion that is not told
 };
-SweepTable table_of(const std::vector<SweepAxis>&, const std::vector<SweepRun>&, const std::vector<AskedResult>&);
+/// One outcome a run. Motions are measured in all states, which takes a while: a line of progress unless quiet.
+SweepTable table_of(const std::vector<SweepAxis>&, const std::vector<SweepRun>&, const std::vector<RunOutcome>&,
+                    const std::vector<AskedResult>&, bool quiet);
 
 /// Everything, all digits.
 TextTable full_table(const SweepTable&);

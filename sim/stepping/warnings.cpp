@@ -62,6 +62,16 @@ int degree_for(double gap) {
   return degree;
 }
 
+/// The least gap, in area radii, that a degree resolves.
+double least_gap(int degree) {
+  double low = 0, high = 1;
+  for (int k = 0; k < 40; ++k) {
+    const double gap = (low + high) / 2;
+    (film_error(degree, gap) > told_share * gap ? low : high) = gap;
+  }
+  return high;
+}
+
 }  // namespace
 
 std::vector<ThinFilm> thin_films(const Model& s, const Dynamics& d) {
@@ -90,9 +100,9 @@ std::string film_warning(const Dynamics& d, const ThinFilm& film, std::size_t ot
   const std::string more = others == 0 ? "" : fmt::format(" (and {} more)", others);
   const int order = d.vesicles[film.vesicle].position.order, needed = degree_for(film.gap);
   return fmt::format(
-      "vesicle {}{}: order {} knows gaps to some {:.2g} area radii, and the nearest neighbour is {:.2g} away: how they "
+      "vesicle {}{}: the nearest neighbour is {:.2g} area radii away, and order {} tells gaps from {:.2g} on: how they "
       "touch is the truncation's; {}",
-      film.vesicle, more, order, film.error, film.gap,
+      film.vesicle, more, film.gap, order, least_gap(order),
       needed > far_too_many ? "begin farther apart" : fmt::format("try order {}", needed));
 }
 

@@ -98,6 +98,8 @@ TEST_CASE("a grid has all combinations once, each with a name of its own", "[swe
   CHECK(names.size() == 12);
   CHECK(points[3].name == "vesicle.0.radius-1_vesicle.1.radius-2_shape-oblate");
   const std::vector<app::SweepPoint> alike = app::points_of({read_axis("a.b=\"x y\",\"x/y\"")});
+  const std::vector<app::SweepPoint> turned = app::points_of({read_axis("a.b=\"x/y\",\"x y\"")});
+  CHECK(alike[0].name == turned[1].name);  // whatever their order
   CHECK(alike[0].name != alike[1].name);
   CHECK_THROWS_WITH(app::points_of({axes[0], axes[0]}), Contains("is there twice"));
   CHECK_THROWS_WITH(app::points_of({read_axis("a.b=1:200:1"), read_axis("a.c=1:200:1")}), Contains("at most 10000"));
@@ -106,23 +108,32 @@ TEST_CASE("a grid has all combinations once, each with a name of its own", "[swe
 TEST_CASE("the share of the work is that of the array's task and of the rank", "[sweep]") {
   const auto share = [](const std::map<std::string, std::string>& given) {
     const Environment environment(given);
-    const auto found = app::share_of_environment();
-    return found ? std::to_string(found->index) + "/" + std::to_string(found->count) : std::string("none");
+    try {
+      const app::Share found = app::share_of_environment();
+      return std::to_string(found.index) + "/" + std::to_string(found.count);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
   };
   const std::map<std::string, std::string> task{
       {"SLURM_ARRAY_TASK_ID", "6"}, {"SLURM_ARRAY_TASK_COUNT", "4"}, {"SLURM_ARRAY_TASK_MIN", "4"}};
   const std::map<std::string, std::string> rank{{"OMPI_COMM_WORLD_RANK", "1"}, {"OMPI_COMM_WORLD_SIZE", "3"}};
-  CHECK(share({}) == "none");
+  CHECK_THAT(share({}), Contains("neither a rank"));
   CHECK(share(task) == "2/4");
   CHECK(share(rank) == "1/3");
   CHECK(share({{"PMI_RANK", "0"}, {"PMI_SIZE", "2"}}) == "0/2");
-  CHECK(share({{"SLURM_PROCID", "1"}, {"SLURM_NTASKS", "2"}}) == "1/2");
+  CHECK(share({{"SLURM_PROCID", "1"}, {"SLURM_STEP_NUM_TASKS", "2"}}) == "1/2");
   std::map<std::string, std::string> both = task;
   both.insert(rank.begin(), rank.end());
   CHECK(share(both) == "7/12");
-  // An array with gaps, 1,5,9: its numbers are no shares.
-  CHECK(share({{"SLURM_ARRAY_TASK_ID", "9"}, {"SLURM_ARRAY_TASK_COUNT", "3"}, {"SLURM_ARRAY_TASK_MIN", "1"}}) ==
-        "none");
+  std::map<std::string, std::string> array{{"SLURM_ARRAY_TASK_ID", "9"},
+                                           {"SLURM_ARRAY_TASK_COUNT", "3"},
+                                           {"SLURM_ARRAY_TASK_MIN", "1"},
+                                           {"SLURM_ARRAY_TASK_MAX", "9"},
+                                           {"SLURM_ARRAY_TASK_STEP", "4"}};
+  CHECK(share(array) == "2/3");
+  array["SLURM_ARRAY_TASK_STEP"] = "1";  // 1,2,9
+  CHECK_THAT(share(array), Contains("not evenly spaced"));
 }
 
 TEST_CASE("a sweep makes the trajectories that simulate makes, however it is divided, and one table", "[sweep]") {
@@ -173,4 +184,42 @@ TEST_CASE("a run of a sweep that stops is told and keeps its place in the table"
   CHECK(stopped.status == 1);
   CHECK_THAT(stopped.err, Contains("rate-1e5 stopped at t = 0"));
   CHECK_THAT(support::read_file(desk.file("o/sweep.csv")), Contains("\n1e5,0,stopped,0,"));
+}
+
+TEST_CASE("scenes that a sweep would make twice are refused, and one that cannot start keeps its place", "[sweep]") {
+  const Desk desk(quick);
+  const auto said = [&](Words words) {
+    words.insert(words.begin(), {"sweep", desk.file("s.toml"), "-o", desk.file("o")});
+    return desk(words).err;
+  };
+  CHECK_THAT(said({"--vary", "vesicle.viscosity_contrast=1,1.0"}), Contains("have one scene"));
+  CHECK_THAT(said({"--vary", "flow.0.rate=1,2", "--vary", "flow.rate=1,3"}), Contains("one key overrides another"));
+  CHECK_THAT(said({"--vary", "flow.rate=1,2", "--set", "flow.rate=3"}), Contains("are the same key"));
+  CHECK_THAT(said({"--vary", "flow.rate=1,2", "--quantities", "shape-distance"}), Contains("is for converge"));
+  CHECK(desk.names().empty());
+  // A second vesicle that overlaps the first at one of two places.
+  support::write_file(desk.file("s.toml"),
+                      quick + "[[vesicle]]\nshape = \"prolate\"\nreduced_volume = 0.9\norder = 4\n");
+  for (const char* jobs : {"1", "2"}) {
+    const Outcome bad = desk({"sweep", desk.file("s.toml"), "-o", desk.file(jobs), "-j", jobs, "--vary",
+                              "vesicle.1.center=[0,0,0.1],[0,0,5]"});
+    CHECK(bad.status == 1);
+    CHECK_THAT(bad.err, Contains("overlap") && Contains("1 of 2 runs could not be made"));
+    const std::string table = support::read_file(desk.file(std::string(jobs) + "/sweep.csv"));
+    CHECK_THAT(table, Contains("missing") && Contains("vesicles 0 and 1 overlap") && Contains("finished"));
+  }
+}
+
+TEST_CASE("a forced sweep replaces what is there of another scene, however many processes there are", "[sweep]") {
+  const Desk desk(quick);
+  const auto sweep = [&](const std::string& folder, const Words& more) {
+    Words words{
+        "sweep", desk.file("s.toml"), "-q", "-o", desk.file(folder), "--vary", "vesicle.viscosity_contrast=1,5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return desk(words).status;
+  };
+  REQUIRE(sweep("a", {}) == 0);
+  REQUIRE(sweep("b", {"--set", "flow.rate=2"}) == 0);
+  REQUIRE(sweep("a", {"--set", "flow.rate=2", "--force", "-j", "2"}) == 0);
+  CHECK(support::read_file(desk.file("a/sweep.csv")) == support::read_file(desk.file("b/sweep.csv")));
 }
