@@ -26,7 +26,7 @@ SuspensionMeasures suspension_measures(const Scene& scene, std::span<const Vesic
   for (std::size_t k = 0; k < vesicles.size(); ++k) squares += (vesicles[k].center - first[k] - drift).cwiseAbs2() / n;
   m.displacement = squares;
   m.inclination_mean = std::arg(double_angle) / (2 * degree);
-  m.inclination_spread = std::sqrt(-2 * std::log(std::min(1.0, std::abs(double_angle)))) / (2 * degree);
+  m.inclination_spread = std::sqrt(std::max(0.0, -2 * std::log(std::abs(double_angle)))) / (2 * degree);
   if (!scene.cell.size) return m;
   const double cell = cell_volume(scene);
   m.volume_fraction = volume / cell;

@@ -295,7 +295,7 @@ TEST_CASE("a periodic cell takes flows that keep it one, and sets the volume fra
   const std::string cell = "[cell]\nsize = [6, 5, 4.5]\n";
   CHECK(error_of(good + cell) == "");
   CHECK(*parse_scene(good + cell, "s.toml", ".").scene.cell.size == sim::Vec3(6, 5, 4.5));
-  CHECK_THAT(error_of(good + "[cell]\nsize = [6, 5, 0]\n"), Contains("s.toml:16:8") && Contains("'size'"));
+  CHECK_THAT(error_of(good + "[cell]\nsize = [6, 5, 0]\n"), Contains("s.toml:16:15") && Contains("'size'"));
   CHECK_THAT(error_of(good + "[cell]\nsice = [6, 5, 4]\n"), Contains("did you mean 'size'"));
   CHECK_THAT(error_of(replaced("kind = \"shear\"\nrate = 1.0", "kind = \"extension\"") + cell),
              Contains("s.toml:4:8") && Contains("'extension' does not keep a [cell] periodic"));
