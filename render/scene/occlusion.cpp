@@ -1,5 +1,7 @@
 #include "render/scene/occlusion.h"
 
+#include "render/core/paint.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,8 +13,6 @@ namespace {
 // Of a sketch, poles included.
 constexpr int net_rings = Sketch::latitudes + 1, net_columns = Sketch::longitudes;
 constexpr double large = 80;  // px: from here on all discs count
-// The key light of light.glsl, in eye space.
-const glm::dvec3 key_direction = glm::normalize(glm::dvec3(-0.45, 0.75, 0.85));
 
 std::size_t index_of(int i, int j) {
   return static_cast<std::size_t>((j + net_columns) % net_columns) * net_rings + static_cast<std::size_t>(i);
@@ -101,7 +101,7 @@ void shade(Mesh& mesh, std::size_t self, std::span<const Sketch> sketches, std::
            const Camera& camera, double radius) {
   const Sketch& own = sketches[self];
   const bool fine = radius > large;
-  const glm::dvec3 key = glm::transpose(glm::dmat3(camera.view)) * key_direction;
+  const glm::dvec3 key = glm::transpose(glm::dmat3(camera.view)) * glm::normalize(key_light);
   struct Neighbour {
     const Discs* discs;
     double share;  // 1, smoothly to 0 where it is so far off that it does not
