@@ -252,7 +252,9 @@ void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
     style.text("name", row.name);
     style.text("meaning", row.meaning);
     const bool dots = row.field && panel.painting.legend->mirrored && panel.view.sign_dots;
-    style.text("defines", render::body_defines(row, panel.view, true, false, tracers > 0, dots));
+    const bool occluded = row.occluded && panel.view.occlusion > 0;
+    style.text("defines", render::body_defines(row, panel.view, true, false, tracers > 0, dots, occluded));
+    style.flag("occluded", occluded);
     style.flag("tracers", row.tracers && panel.view.tracers && tracers > 0);
     style.flag("own_colour", row.own_colour);
     style.flag("see_through", row.see_through);
@@ -274,6 +276,7 @@ void write_shaders(Members& page, bool fades) {
       names.insert(file);
     }
   for (const std::string& name : names) files.text(name, render::shader_text(name, {}));
+  page.text("light", render::light_defines());
   page.text("defines", fades ? "#define DEPTH_CUE\n" : "");
   page.raw("shaders", files.whole());
   page.raw("libraries", libraries.whole());
@@ -300,6 +303,8 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.number("edge_step", render::edge_step);
   paint.number("arrow_thickness", render::arrow_thickness);
   paint.number("longest_arrow", render::longest_arrow);
+  paint.vector("key_light", render::key_light);
+  paint.number("occlusion", view.occlusion);
   paint.number("line_width", view.line_width);
   paint.number("outline_width", view.outline_width);
   paint.number("opacity", view.opacity);

@@ -29,6 +29,7 @@ std::string type_text(const double&) { return "number"; }
 std::string type_text(const std::string&) { return "text"; }
 std::string type_text(const sim::Vec3&) { return "[x, y, z]"; }
 std::string type_text(const std::array<double, 3>&) { return "[n, m, value]"; }
+std::string type_text(const render::FieldRange&) { return "[lowest, highest], []"; }
 template <class T>
 std::string type_text(const std::vector<T>&) {
   return "list of " + type_text(T{});
@@ -43,7 +44,7 @@ std::string allowed_text(const sim::Parameter& p, const std::string& type) {
   if (!p.catalogue.empty()) return fmt::format("see {}", p.catalogue);
   std::string text;
   for (const std::string_view choice : p.choices) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", choice);
-  if (!text.empty()) return text;
+  if (!text.empty()) return type.ends_with("text") ? text : fmt::format("{} or {}", type, text);
   sim::Parameter range = p;
   if (p.zero_is_auto) range.minimum = std::max(1.0, p.minimum);
   const std::string limits = range_text(range);

@@ -101,6 +101,13 @@ Settings plain_settings(const Settings& settings, const std::string& background)
   return plain;
 }
 
+Painting painting_of_movie(const PictureSource& source) {
+  sim::Plans plans;
+  const double area = sim::measure(plans, source.trajectory.state(0).vesicles.front(), 1, 1).area;
+  return plan_painting(source.trajectory, instants_to_look_at(source.trajectory), source.settings,
+                       std::sqrt(area / sim::default_area));
+}
+
 ViewPanel panel_of(const Still& still, const PictureSource& source, const Painting& painting, const sim::State& state) {
   ViewPanel p{.source = source, .view = source.settings.view};
   p.view.size = {still.width, still.height};
@@ -128,25 +135,40 @@ render::Image draw_picture(Studio& studio, const Production& production, double 
     parts.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
   render::Image whole = parts.size() == 1 && !production.plots ? std::move(parts.front()) : joined(production, parts);
-  if (production.plots) add_plots(whole, *production.plots, time);
+  if (production.plots) add_plots(whole, *production.plots, studio.font, time);
   return whole;
 }
 
-DrawnStills draw_stills(const sim::TrajectoryReader& trajectory, const Settings& settings,
-                        const std::string& background, const std::vector<Still>& stills, const Options& options) {
+Studio studio_of_stills(const Options& options) {
+  return {render::parse_gl_choice(options.gl), options.shader_dir, 1080};
+}
+
+DrawnStills draw_stills(Studio& studio, const PictureSource& source, const std::optional<render::Legend>& legend,
+                        const std::string& background, const std::vector<Still>& stills) {
+  const auto& [trajectory, settings] = source;
   const Settings plain = plain_settings(settings, background);
-  Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, 1080);
-  const double area = sim::measure(studio.plans, trajectory.state(0).vesicles.front(), 1, 1).area;
-  const Painting painting =
-      plan_painting(trajectory, instants_to_look_at(trajectory), plain, std::sqrt(area / sim::default_area));
+  Painting painting = painting_of_movie({trajectory, plain});
+  if (legend && painting.field) painting.legend = legend;
   DrawnStills drawn;
   if (painting.field != nullptr || plain.view.colour_by != "order") drawn.legend = painting.legend;
   for (const Still& still : stills) {
-    const sim::State state = boxed(settings.scene, state_at(trajectory, still.time));
+    sim::State state = boxed(settings.scene, state_at(trajectory, still.time));
+    if (still.alone) state.vesicles.resize(1);
     const ViewPanel panel = panel_of(still, {trajectory, plain}, painting, state);
     drawn.images.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
   return drawn;
+}
+
+std::optional<render::Legend> shared_legend(const std::vector<PictureSource>& sources) {
+  const render::FieldRange& range = sources.front().settings.view.field_range;
+  if (!range.shared) return {};
+  std::vector<Painting> own;
+  std::vector<Painting*> paintings;
+  for (const PictureSource& source : sources) own.push_back(painting_of_movie(source));
+  for (Painting& painting : own) paintings.push_back(&painting);
+  share_legend(paintings, range);
+  return own.front().field ? own.front().legend : std::nullopt;
 }
 
 }  // namespace app

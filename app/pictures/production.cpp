@@ -46,7 +46,7 @@ SourceMeasures measures_of(const PictureSource& source, bool titled, std::option
   const sim::VesicleMeasures first = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
   const double area_radius = std::sqrt(first.area / sim::default_area);
   std::optional<sim::State> only;
-  if (still) only = boxed(settings.scene, state_at(trajectory, *still));
+  if (still && !settings.view.field_range.shared) only = boxed(settings.scene, state_at(trajectory, *still));
   m.painting = plan_painting(trajectory, chosen, settings, area_radius, only ? &*only : nullptr);
   m.captions.parameters = parameter_caption(settings.scene, area_radius, first.reduced_volume);
   m.captions.scale_length = area_radius;
@@ -155,7 +155,7 @@ Production prepare_pictures(const std::vector<PictureSource>& sources, std::opti
   for (const PictureSource& source : sources) measures.push_back(measures_of(source, sources.size() > 1, still));
   std::vector<Painting*> paintings;
   for (SourceMeasures& m : measures) paintings.push_back(&m.painting);
-  share_legend(paintings, !first.field_range.empty());
+  share_legend(paintings, first.field_range);
 
   std::vector<std::string> cameras = first.views;
   if (cameras.empty()) cameras = {first.camera};

@@ -140,8 +140,6 @@ struct Reader {
   }
   void check(const toml::table& table, render::ViewParameters& p) const {
     if (p.size.size() != 2) fail_at(source_of(table, "size"), "'size' must be two whole numbers, [width, height]");
-    if (!p.field_range.empty() && (p.field_range.size() != 2 || !(p.field_range[0] < p.field_range[1])))
-      fail_at(source_of(table, "field_range"), "'field_range' must be two numbers, [lowest, highest], or []");
     if (p.cut_normal.norm() == 0) fail_at(source_of(table, "cut_normal"), "'cut_normal' must not be the zero vector");
     if (p.up.norm() == 0) fail_at(source_of(table, "up"), "'up' must not be the zero vector");
     try {

@@ -180,6 +180,20 @@ void read_value(const sim::Parameter& p, const toml::node& node, sim::Vec3& valu
   value = sim::Vec3(three[0], three[1], three[2]);
 }
 
+void read_value(const sim::Parameter& p, const toml::node& node, render::FieldRange& value) {
+  value = {};
+  if (node.is_string()) {
+    std::string word;
+    read_value(p, node, word);
+    value.shared = true;
+    return;
+  }
+  read_value(p, node, value.ends);
+  if (value.given() && (value.ends.size() != 2 || !(value.ends[0] < value.ends[1])))
+    fail_at(node.source(),
+            fmt::format("'{}' must be two numbers, [lowest, highest], or [], or \"{}\"", p.name, p.choices[0]));
+}
+
 std::string checksum(std::string_view bytes) {
   std::uint64_t h = 14695981039346656037ull;
   for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
