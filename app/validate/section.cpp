@@ -91,7 +91,7 @@ render::Curve point_curve(std::string name, std::vector<double> x, std::vector<d
   return curve;
 }
 
-render::Figure panels(std::vector<render::Plot> plots) {
+render::Figure panels(const std::vector<render::Plot>& plots) {
   render::FigureInput input;
   input.parameters.columns = static_cast<int>(std::min<std::size_t>(plots.size(), 2));
   return render::arranged(input, plots, false, "");

@@ -45,7 +45,7 @@ render::Curve line_curve(std::string name, std::vector<double> x, std::vector<do
 render::Curve point_curve(std::string name, std::vector<double> x, std::vector<double> y, std::size_t colour,
                           render::Marker marker, bool line = false);
 /// Panels side by side.
-render::Figure panels(std::vector<render::Plot>);
+render::Figure panels(const std::vector<render::Plot>&);
 
 /// When and how it was measured.
 struct Measurement {

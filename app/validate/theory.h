@@ -2,6 +2,8 @@
 // 1/rate, lambda is the viscosity inside over that outside.
 #pragma once
 
+#include <array>
+
 namespace app {
 
 /// Delta = 4 pi (nu^(-2/3) - 1).
@@ -19,5 +21,13 @@ double keller_skalak_border(double aspect_ratio);
 /// contrast at which theta reaches 0.
 double quasi_spherical_cosine(double lambda);
 double quasi_spherical_border(double excess_area);
+
+/// Coefficients of degrees 2, 3, 4 of the radius of a nearly spherical vesicle, R = 1.
+using Amplitudes = std::array<double, 3>;
+/// Rate at which that of degree n falls without flow, kappa_b = 1, viscosity 1 outside:
+///   (n - 1)n(n + 1)(n + 2)[n(n + 1) + s] / (2 D_n),  D_n = 2n^3 + 3n^2 + 4 + lambda (2n^3 + 3n^2 - 5).
+double wave_rate(int n, double lambda, double tension);
+/// Amplitudes after a time, with the tension s(t) that keeps the area: sum of (n - 1)(n + 2) a_n^2.
+Amplitudes decayed_waves(const Amplitudes&, double lambda, double time);
 
 }  // namespace app

@@ -27,12 +27,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const BaseScene& find_base(std::string_view name) {
-  for (const BaseScene& scene : base_scenes())
-    if (scene.name == name) return scene;
-  throw std::logic_error("no such base scene");
-}
-
 /// As a shell takes it.
 std::string quoted_change(const std::string& change) {
   return change.find_first_of("[]\"' ") == std::string::npos ? change : fmt::format("'{}'", change);
@@ -61,13 +55,13 @@ Trials::~Trials() {
 }
 
 Trial Trials::attempt(std::string_view name, const Changes& changes) {
-  const BaseScene& base = find_base(name);
+  const BaseScene& base = find_base_scene(name);
   Changes all = changes;
   if (std::none_of(all.begin(), all.end(), [](const std::string& c) { return c.starts_with("vesicle.order"); }))
     all.push_back(fmt::format("vesicle.order={}", base.order));
   ++count_;
   if (count_ == 1) {
-    first_command_ = fmt::format("tanktread simulate scenes/{}.toml", name);
+    first_command_ = fmt::format("tanktread simulate {}{}.toml", base.in_folder ? "scenes/" : "", name);
     for (const std::string& change : all) first_command_ += " --set " + quoted_change(change);
   }
   const Settings settings = parse_scene(base.text, std::string(name), ".", all);

@@ -101,25 +101,19 @@ render::Figure border_figure(const Border& treading, const Border& tumbling, con
 Section validate_border(Trials& trials) {
   Section s{
       "Where a prolate in shear stops tank-treading, and where it begins to tumble, over (ν, λ): "
-      "`scenes/tumbling.toml` "
-      "with p = 8 (tolerance 1e-3), γ̇ = 1, up to γ̇t = 100, by bisection of λ to ± 0.01 and ± 0.02. The motion is told "
-      "by "
-      "the unwrapped inclination. Treading: started at +15° it settles at a positive angle and never falls below 0. "
-      "Tumbling: started along the flow it passes −90°. Between the two the angle swings about 0 with a shape that "
-      "breathes (vacillating breathing or trembling; Abreu et al. 2014, arXiv:1311.7341, review it). Starts matter "
-      "there, "
-      "since the swing dies out slowly if at all, and the second border is that of this start, within the shear plane. "
-      "Keller and Skalak's ellipsoid of fixed shape knows one border only (B = 1), and no κ_b. Expected: both borders "
-      "grow "
-      "with ν and hardly depend on κ_b (3 %), since both capillary numbers, 10 and 100, are large; vesicles, which "
-      "deform, "
-      "tread up to a higher λ than Keller and Skalak's ellipsoid for ν ≤ 0.9, and come nearer to it as ν grows. No "
-      "theory "
-      "tells by how much: the share of 25 % is a bound for gross errors only. The quasi-spherical theory in strong "
-      "shear "
-      "ends treading at λ = (120 √(2π/15)/√Δ − 32)/23, where its angle is 0. It is the limit Δ → 0, which Keller and "
-      "Skalak's is not: at ν = 0.99 and 0.999 the border must tend to it with an error like √Δ, the next order of that "
-      "theory, and lies below Keller and Skalak there (14.07 and 41.98)."};
+      "`scenes/tumbling.toml` with p = 8 (tolerance 1e-3), γ̇ = 1, up to γ̇t = 100, by bisection of λ to ± 0.01 and "
+      "± 0.02. The motion is told by the unwrapped inclination. Treading: started at +15° it settles at a positive "
+      "angle and never falls below 0. Tumbling: started along the flow it passes −90°. Between the two the angle "
+      "swings about 0 with a shape that breathes (vacillating breathing or trembling; Abreu et al. 2014, "
+      "arXiv:1311.7341, review it). Starts matter there, since the swing dies out slowly if at all, and the second "
+      "border is that of this start, within the shear plane. Keller and Skalak's ellipsoid of fixed shape knows one "
+      "border only (B = 1), and no κ_b. Expected: both borders grow with ν and hardly depend on κ_b (3 %), since "
+      "both capillary numbers, 10 and 100, are large; vesicles, which deform, tread up to a higher λ than Keller "
+      "and Skalak's ellipsoid for ν ≤ 0.9, and come nearer to it as ν grows. No theory tells by how much: the share "
+      "of 25 % is a bound for gross errors only. The quasi-spherical theory in strong shear ends treading at λ = "
+      "(120 √(2π/15)/√Δ − 32)/23, where its angle is 0. It is the limit Δ → 0, which Keller and Skalak's is not: at "
+      "ν = 0.99 and 0.999 the border must tend to it with an error like √Δ, the next order of that theory, and lies "
+      "below Keller and Skalak there (14.07 and 41.98)."};
   s.table({"ν", "κ_b", "treading up to λ", "tumbling from λ", "Keller, Skalak", "first border over theirs"});
   Border treading, tumbling;
   std::map<double, double> theory;

@@ -31,13 +31,10 @@ Steady steady_of(const Samples& samples) {
 Section validate_poiseuille(Trials& trials) {
   Section s{
       "Parachute (t = 40) and slipper (t = 60). The paper's errors there: area 4.24e-2, volume 5.96e-3. What they "
-      "converge "
-      "to, in space by the differences from one order to the next, which must have fallen from p = 8 to p = 20, and "
-      "the "
-      "last of them below 0.002 R₀ and 0.2 degrees: that is the error stated for the value at p = 20. In time by the "
-      "difference between fixed steps at p = 12. The parachute keeps to the axis, where symmetry holds it: what is "
-      "seen "
-      "are rounding errors that grow, 1e-3."};
+      "converge to, in space by the differences from one order to the next, which must have fallen from p = 8 to p "
+      "= 20, and the last of them below 0.002 R₀ and 0.2 degrees: that is the error stated for the value at p = 20. "
+      "In time by the difference between fixed steps at p = 12. The parachute keeps to the axis, where symmetry "
+      "holds it: what is seen are rounding errors that grow, 1e-3."};
   s.checks();
   constexpr double axis_velocity = 0.25;  // of the fluid: flow.centreline_velocity
   const auto errors = [&](const std::string& scene, const Samples& samples) {
@@ -121,19 +118,14 @@ double displacement(Trials& trials, double contrast, double offset, double toler
 Section validate_encounter(Trials& trials) {
   Section s{
       "Two prolates (ν = 0.85, κ_b = 0.01, p = 8) on neighbouring streamlines of a shear flow pass each other "
-      "(`scenes/encounter.toml`): their offset across the flow, when they are as far apart along it as at the start, "
-      "less "
-      "the offset at the start. They start 16 R₀ apart along the flow, ten times the offset for the larger offsets. "
-      "Expected: positive (they push each other aside and do not come back: a vesicle has normal stresses along and "
-      "across "
-      "the flow, unlike a rigid sphere), smaller the larger the offset, and, far apart, like 1/offset²: two force "
-      "dipoles "
-      "with S_xx, S_zz move each other across by ∝ ∫ z (x² S_xx + z² S_zz) r⁻⁵ dx / (γ̇ z) ∝ 1/z². λ = 1 treads at 24°, "
-      "λ = "
-      "5 at a few degrees. The ratio at offsets 4 and 8 may miss 4 by 15 %, of the order of R₀/offset. Errors: the "
-      "tolerance 1e-3 promises less than 0.3 γ̇t times 1e-3 of position, some 0.02 for the small offsets; asked for is "
-      "a "
-      "twentieth of it from 1e-3 to 1e-4."};
+      "(`scenes/encounter.toml`): their offset across the flow, when they are as far apart along it as at the "
+      "start, less the offset at the start. They start 16 R₀ apart along the flow, ten times the offset for the "
+      "larger offsets. Expected: positive (they push each other aside and do not come back: a vesicle has normal "
+      "stresses along and across the flow, unlike a rigid sphere), smaller the larger the offset, and, far apart, "
+      "like 1/offset²: two force dipoles with S_xx, S_zz move each other across by ∝ ∫ z (x² S_xx + z² S_zz) r⁻⁵ dx "
+      "/ (γ̇ z) ∝ 1/z². λ = 1 treads at 24°, λ = 5 at a few degrees. The ratio at offsets 4 and 8 may miss 4 by 15 "
+      "%, of the order of R₀/offset. Errors: the tolerance 1e-3 promises less than 0.3 γ̇t times 1e-3 of position, "
+      "some 0.02 for the small offsets; asked for is a twentieth of it from 1e-3 to 1e-4."};
   s.table({"λ", "offset at the start", "displacement, tolerance 1e-3", "1e-4", "difference",
            "times (offset + half the displacement)²"});
   const std::vector<double> offsets{0.5, 1, 2, 4, 8};
@@ -177,21 +169,16 @@ Section validate_encounter(Trials& trials) {
 
 Section validate_reversibility(Trials& trials) {
   Section s{
-      "Without bending (κ_b = 0) nothing in the equations has a direction of time: the shear γ̇ sin(πt/T) for a time of "
-      "T "
-      "and the same back until 2T brings every point to where it was (`scenes/tank-treading.toml`, p = 8, "
-      "`flow.time_factor=\"oscillating\"`, `flow.phase=-π/2`, `numerics.reparametrization=\"off\"` so that points can "
-      "be "
-      "compared). Measured: distance of 1986 points of the membrane from where they started (root of the mean square, "
-      "R₀). "
-      "Expected: it falls like the tolerance, at least fivefold a decade, and is below what the tolerance promises for "
-      "the "
-      "whole way, 0.3 γ̇ · 2T times the tolerance (see [stepping](stepping.md)). For T = 4 at λ = 1 there is no such "
-      "promise: on the way back the flow compresses the membrane, and without bending all wavelengths buckle, so that "
-      "errors grow by a factor of a thousand or more before they end. Reversal still holds in the limit, and the table "
-      "shows it; only a fall by a factor of 2 a decade on the average is asked for. For T = 10 at λ = 1 no tolerance "
-      "that "
-      "was tried brings the shape back."};
+      "Without bending (κ_b = 0) nothing in the equations has a direction of time: the shear γ̇ sin(πt/T) for a "
+      "time of T and the same back until 2T brings every point to where it was (`scenes/tank-treading.toml`, p = 8, "
+      "`flow.time_factor=\"oscillating\"`, `flow.phase=-π/2`, `numerics.reparametrization=\"off\"` so that points "
+      "can be compared). Measured: distance of 1986 points of the membrane from where they started (root of the "
+      "mean square, R₀). Expected: it falls like the tolerance, at least fivefold a decade, and is below what the "
+      "tolerance promises for the whole way, 0.3 γ̇ · 2T times the tolerance (see [stepping](stepping.md)). For T = "
+      "4 at λ = 1 there is no such promise: on the way back the flow compresses the membrane, and without bending "
+      "all wavelengths buckle, so that errors grow by a factor of a thousand or more before they end. Reversal "
+      "still holds in the limit, and the table shows it; only a fall by a factor of 2 a decade on the average is "
+      "asked for. For T = 10 at λ = 1 no tolerance that was tried brings the shape back."};
   s.table(
       {"λ", "T", "largest angle", "tolerance 1e-2", "1e-3", "1e-4", "1e-5", "fall a decade", "below the promise", ""});
   const std::vector<double> tolerances{1e-2, 1e-3, 1e-4, 1e-5};

@@ -108,14 +108,12 @@ HardRun hard_run(Trials& trials, const HardScene& scene, double tolerance) {
 
 Section validate_hard(Trials& trials) {
   Section s{
-      "Scenes in which a method may look fine and be wrong, each with the tolerance 1e-3 and again with 1e-4, orders "
-      "automatic. Measured: the distance of the final membranes, points of one from the surface of the other wherever "
-      "its "
-      "points lie (root mean square over the area, of the worse vesicle, R₀). Each run states what its steps and its "
-      "orders leave in the position; the distance must not exceed the sum of both statements. A run may also stop "
-      "before "
-      "the end, if it says why: the table then has its reason. The last column counts steps, iterations of the linear "
-      "solver for each, and the highest order."};
+      "Scenes in which a method may look fine and be wrong, each with the tolerance 1e-3 and again with 1e-4, "
+      "orders automatic. Measured: the distance of the final membranes, points of one from the surface of the other "
+      "wherever its points lie (root mean square over the area, of the worse vesicle, R₀). Each run states what its "
+      "steps and its orders leave in the position; the distance must not exceed the sum of both statements. A run "
+      "may also stop before the end, if it says why: the table then has its reason. The last column counts steps, "
+      "iterations of the linear solver for each, and the highest order."};
   s.table({"scene", "changed", "distance", "stated, 1e-3", "stated, 1e-4", "steps, 1e-3", "steps, 1e-4", ""});
   std::vector<double> distances, statements;
   for (const HardScene& scene : hard_scenes()) {

@@ -69,28 +69,19 @@ void check_errors(Section& s, const std::string& motion, const Samples& samples)
 Section validate_long_runs(Trials& trials) {
   Section s{
       "Tank-treading (`scenes/tank-treading.toml`, λ = 1) and tumbling (`scenes/tumbling.toml`, λ = 10) with p = 8, "
-      "tolerance 1e-3, up to γ̇t = 1000: some 57 turns of the membrane, 76 half turns of the body. What an inaccurate "
-      "method spoils in the long run: area and volume are corrected in every step and must stay to rounding, 1e-11; "
-      "the "
-      "spectrum's tail must not grow (grid points that crowd or a shape that roughens would raise it); treading must "
-      "stay "
-      "as it was at γ̇t = 100, to 0.02° and to twice what the energy wanders about, 2e-4 for p = 8 with tolerances of "
-      "1e-3 "
-      "and 1e-4. Tumbling is not periodic to begin with. Its shape settles within a few times that of bending, μR³/κ_b "
-      "= "
-      "100 for κ_b = 0.01 and 10 for κ_b = 0.1, so half turns get shorter, for longer than the run for the first and "
-      "until "
-      "about 400 for the second. That is not error that adds up: a tolerance of 1e-4 must show the same, to within "
-      "0.01, "
-      "twice the error of a half turn with 1e-3, which is 0.005; and for κ_b = 0.1 the end must differ by less than "
-      "that. "
-      "Besides, tumbling in the plane of shear is unstable here: a tilt out of it starts from rounding errors and "
-      "grows by "
-      "four decades from γ̇t = 250 to 600, for tolerances of 1e-3 and 1e-4 and p = 8 and 12 alike, until it shortens "
-      "the "
-      "last half turns. The second moments that mix y with x and z, as a share of the trace, tell it; whoever needs "
-      "motion "
-      "within the plane for so long should know."};
+      "tolerance 1e-3, up to γ̇t = 1000: some 57 turns of the membrane, 76 half turns of the body. What an "
+      "inaccurate method spoils in the long run: area and volume are corrected in every step and must stay to "
+      "rounding, 1e-11; the spectrum's tail must not grow (grid points that crowd or a shape that roughens would "
+      "raise it); treading must stay as it was at γ̇t = 100, to 0.02° and to twice what the energy wanders about, "
+      "2e-4 for p = 8 with tolerances of 1e-3 and 1e-4. Tumbling is not periodic to begin with. Its shape settles "
+      "within a few times that of bending, μR³/κ_b = 100 for κ_b = 0.01 and 10 for κ_b = 0.1, so half turns get "
+      "shorter, for longer than the run for the first and until about 400 for the second. That is not error that "
+      "adds up: a tolerance of 1e-4 must show the same, to within 0.01, twice the error of a half turn with 1e-3, "
+      "which is 0.005; and for κ_b = 0.1 the end must differ by less than that. Besides, tumbling in the plane of "
+      "shear is unstable here: a tilt out of it starts from rounding errors and grows by four decades from γ̇t = "
+      "250 to 600, for tolerances of 1e-3 and 1e-4 and p = 8 and 12 alike, until it shortens the last half turns. "
+      "The second moments that mix y with x and z, as a share of the trace, tell it; whoever needs motion within "
+      "the plane for so long should know."};
   s.checks();
   {
     const Trial trial = trials.run("tank-treading", {"vesicle.order=8", "time.end=1000", "time.save_every=1"});

@@ -43,12 +43,9 @@ double plateau(const std::vector<double>& values, std::size_t window, std::size_
 Section validate_relaxation(Trials& trials) {
   Section s{
       "Energy E/(8πκ) that a spheroid relaxes to without flow: p = 12, κ_b = 1, up to t = 40, against exact "
-      "axisymmetric "
-      "minima (8 digits); allowed is 1e-4, what is left of the way and of the order ([equilibria](#equilibria) asks "
-      "for "
-      "more). For ν near 1 the oblate is a saddle, from which rounding leads away in the end: its plateau is read "
-      "where "
-      "the energy changes least."};
+      "axisymmetric minima (8 digits); allowed is 1e-4, what is left of the way and of the order "
+      "([equilibria](#equilibria) asks for more). For ν near 1 the oblate is a saddle, from which rounding leads "
+      "away in the end: its plateau is read where the energy changes least."};
   s.checks();
   render::Plot plot;
   plot.x = {.label = "t", .grid = true};
@@ -78,22 +75,15 @@ Section validate_relaxation(Trials& trials) {
 Section validate_equilibria(Trials& trials) {
   Section s{
       "Where shapes without flow come to rest: `scenes/relaxation.toml`, κ_b = 1, tolerance 1e-3, up to t = 200, "
-      "energy "
-      "E/(8πκ) against that of exact axisymmetric minima (8 digits). Errors must fall with the order like those of any "
-      "smooth shape, by tens for each four degrees: asked for are 1e-7 at ν = 0.95 from p = 12, and for the more "
-      "slender ν "
-      "= 0.85 2e-5 at p = 12 and 1e-6 at p = 16. At rest steps are long, and the energy at the end wanders by less "
-      "than "
-      "1e-6; with a tolerance of 1e-4 that of p = 16 stays at 2.0e-7 above the exact one. Oblates of ν = 0.95 and 0.85 "
-      "are "
-      "equilibria too, but saddles: from rounding errors a second axis grows, and they turn into prolates at t = 80 to "
-      "100. Their plateau is where the energy changes least before t = 40, with the same bounds; then they must arrive "
-      "at "
-      "the prolate. (The prolate that they become has the poles of the grid at its side, not at its ends, and is "
-      "resolved "
-      "better so.) At ν = 0.65 the disc with two dimples has the lower energy of the two, 1.82623345 against "
-      "1.82792987, "
-      "and both stay what they are."};
+      "energy E/(8πκ) against that of exact axisymmetric minima (8 digits). Errors must fall with the order like "
+      "those of any smooth shape, by tens for each four degrees: asked for are 1e-7 at ν = 0.95 from p = 12, and "
+      "for the more slender ν = 0.85 2e-5 at p = 12 and 1e-6 at p = 16. At rest steps are long, and the energy at "
+      "the end wanders by less than 1e-6; with a tolerance of 1e-4 that of p = 16 stays at 2.0e-7 above the exact "
+      "one. Oblates of ν = 0.95 and 0.85 are equilibria too, but saddles: from rounding errors a second axis grows, "
+      "and they turn into prolates at t = 80 to 100. Their plateau is where the energy changes least before t = 40, "
+      "with the same bounds; then they must arrive at the prolate. (The prolate that they become has the poles of "
+      "the grid at its side, not at its ends, and is resolved better so.) At ν = 0.65 the disc with two dimples has "
+      "the lower energy of the two, 1.82623345 against 1.82792987, and both stay what they are."};
   s.table({"start", "ν", "p", "plateau before 40, less exact", "end, less exact", "bound", "axes at the end", ""});
   struct Case {
     std::string shape;
@@ -146,14 +136,11 @@ Section validate_equilibria(Trials& trials) {
 
 Section validate_schemes(Trials& trials) {
   Section s{
-      "Error of the half turn of 'tumbling' (p = 8) against its value at γ̇Δt = 0.0125 with bdf2, by scheme and step, "
-      "with "
-      "the correction and without reparametrization. Expected: bdf2 of second order and backward Euler of first, so "
-      "that "
-      "from 0.2 to 0.1 errors fall by 4 or more and by 2 (± 0.2), which is where they exceed the reference's own error "
-      "and the resolution of the saved states. Times: processor time of the run, saved states every 0.2 included, by "
-      "the "
-      "number of steps."};
+      "Error of the half turn of 'tumbling' (p = 8) against its value at γ̇Δt = 0.0125 with bdf2, by scheme and "
+      "step, with the correction and without reparametrization. Expected: bdf2 of second order and backward Euler "
+      "of first, so that from 0.2 to 0.1 errors fall by 4 or more and by 2 (± 0.2), which is where they exceed the "
+      "reference's own error and the resolution of the saved states. Times: processor time of the run, saved states "
+      "every 0.2 included, by the number of steps."};
   const Changes same{"vesicle.order=8", "time.end=15", "time.save_every=0.2", "numerics.reparametrization=off"};
   const double exact = time_at(trials.history("tumbling", same + Changes{"time.step=0.0125"}), -180);
   s.table({"γ̇Δt", "bdf2", "globally-implicit", "ms a step, bdf2", "ms a step, globally-implicit"});

@@ -15,14 +15,11 @@ using std::numbers::pi;
 Section validate_rheology(Trials& trials) {
   Section s{
       "Stress of a dilute suspension in the limit of small excess area Δ, here ν = 0.999, p = 8, γ̇t = 20. Of first "
-      "order "
-      "in the shape N₁/γ̇φ = √(30Δ/π) and N₂/γ̇φ = −(13/56) √(30Δ/π) for every λ, and [η] = 5/2 − Δ(23λ + 32)/(16π) "
-      "(Misbah "
-      "2006; Danker, Misbah 2007). The shape itself, of second order, adds a part of the order Δ to [η] that does not "
-      "depend on λ: its number is shown for information, and differences between contrasts are compared, to 3 % of "
-      "themselves, the next order again. What comes next in N₁ and N₂ is smaller by about the square of cos 2θ: they "
-      "are "
-      "allowed 0.002 + Δ((23λ + 32)/120)² of N₁. A sphere has 5/2."};
+      "order in the shape N₁/γ̇φ = √(30Δ/π) and N₂/γ̇φ = −(13/56) √(30Δ/π) for every λ, and [η] = 5/2 − Δ(23λ + "
+      "32)/(16π) (Misbah 2006; Danker, Misbah 2007). The shape itself, of second order, adds a part of the order Δ "
+      "to [η] that does not depend on λ: its number is shown for information, and differences between contrasts are "
+      "compared, to 3 % of themselves, the next order again. What comes next in N₁ and N₂ is smaller by about the "
+      "square of cos 2θ: they are allowed 0.002 + Δ((23λ + 32)/120)² of N₁. A sphere has 5/2."};
   constexpr double nu = 0.999;
   const double excess = excess_area(nu), first = rounded(std::sqrt(30 * excess / pi), 4);
   std::map<double, double> viscosity;

@@ -14,11 +14,10 @@ namespace app {
 Section validate_rigid_motions(Trials& trials) {
   Section s{
       "A prolate of reduced volume 0.85, askew, carried by a uniform stream U and by turning fluid ω (γ̇ = 0) for a "
-      "time "
-      "of 2 in steps of 0.1: what its centre misses, relative to the way, and by how much its energy E/(8πκ) and mean "
-      "tension differ from a run at rest. The largest over U, ω = 1, 10, 100. The motion is a rigid one, which the "
-      "scheme takes exactly: what is left is rounding, 1e-9 of the way, and 1e-8 of energy and tension, whose third "
-      "derivatives of the position raise it."};
+      "time of 2 in steps of 0.1: what its centre misses, relative to the way, and by how much its energy E/(8πκ) "
+      "and mean tension differ from a run at rest. The largest over U, ω = 1, 10, 100. The motion is a rigid one, "
+      "which the scheme takes exactly: what is left is rounding, 1e-9 of the way, and 1e-8 of energy and tension, "
+      "whose third derivatives of the position raise it."};
   s.table({"λ", "p", "stream: centre", "energy", "tension", "turning: centre", "energy", "tension", ""});
   for (const double contrast : {0.1, 10.0, 100.0, 1000.0})
     for (const int order : {6, 8, 12}) {
@@ -61,13 +60,12 @@ Section validate_rigid_motions(Trials& trials) {
 Section validate_spheres(Trials& trials) {
   Section s{
       "Spheres and nearly round prolates in shear for a time of 2, p = 8: longest axis less 1, over √(1 − ν) where "
-      "there "
-      "is an excess; area error and mean tension. A sphere's constant tension is given, and so is that of 1 − ν below "
-      "2e-6, which is held round: to 3e-5, and a tenth more is allowed. Beyond, the whole excess is in the ellipsoid "
-      "along "
-      "the flow's axis of strain, whose longest axis exceeds 1 by √(5/4) √(1 − ν), and the mean tension is as one over "
-      "the root of the excess, both but for the next order: asked for are 0.005 + 2 √(1 − ν) of the one and, from the "
-      "smallest excess on, of the other. Areas keep to 1e-8, the rounding of a sphere's shape."};
+      "there is an excess; area error and mean tension. A sphere's constant tension is given, and so is that of 1 − "
+      "ν below 2e-6, which is held round: to 3e-5, and a tenth more is allowed. Beyond, the whole excess is in the "
+      "ellipsoid along the flow's axis of strain, whose longest axis exceeds 1 by √(5/4) √(1 − ν), and the mean "
+      "tension is as one over the root of the excess, both but for the next order: asked for are 0.005 + 2 √(1 − ν) "
+      "of the one and, from the smallest excess on, of the other. Areas keep to 1e-8, the rounding of a sphere's "
+      "shape."};
   s.table({"λ", "1 − ν", "Δt", "longest axis − 1", "over √(1 − ν)", "area error", "mean tension", ""});
   const double limit = std::sqrt(1.25);
   std::vector<double> excesses, longer_axes;
@@ -111,17 +109,13 @@ Section validate_spheres(Trials& trials) {
 
 Section validate_sedimentation(Trials& trials) {
   Section s{
-      "A sinking sphere (`scenes/sedimentation.toml` with `vesicle.reduced_volume=1`, `vesicle.axis=[1,0,0]`, Δρ = 1, "
-      "g = "
-      "1 along −z) for a time of 2. A spherical membrane that cannot stretch neither deforms nor, by symmetry, flows: "
-      "it "
-      "sinks as a rigid sphere, with Stokes' (2/9) Δρ g R²/μ, whatever λ and κ_b, and with a tension of (3/2) μ U cos "
-      "θ, "
-      "θ from the lower pole, whose largest value is Δρ g R²/3 (derived from the traction (3/2) μU/R on a rigid "
-      "sphere). "
-      "Linear solves to 1e-12 and orders that represent a sphere exactly leave rounding and quadrature: 1e-8, also of "
-      "the "
-      "tension between the points of the grid, on a mesh of 1986 points."};
+      "A sinking sphere (`scenes/sedimentation.toml` with `vesicle.reduced_volume=1`, `vesicle.axis=[1,0,0]`, Δρ = "
+      "1, g = 1 along −z) for a time of 2. A spherical membrane that cannot stretch neither deforms nor, by "
+      "symmetry, flows: it sinks as a rigid sphere, with Stokes' (2/9) Δρ g R²/μ, whatever λ and κ_b, and with a "
+      "tension of (3/2) μ U cos θ, θ from the lower pole, whose largest value is Δρ g R²/3 (derived from the "
+      "traction (3/2) μU/R on a rigid sphere). Linear solves to 1e-12 and orders that represent a sphere exactly "
+      "leave rounding and quadrature: 1e-8, also of the tension between the points of the grid, on a mesh of 1986 "
+      "points."};
   s.table({"λ", "R", "p", "speed / ((2/9) Δρ g R²) − 1", "sideways speed / speed", "largest tension / (Δρ g R²/3) − 1",
            "tension on the mesh, largest error", ""});
   struct Case {
@@ -158,19 +152,13 @@ Section validate_faxen(Trials& trials) {
   constexpr double a = 0.1;  // of the flow
   Section s{
       "A vesicle beside the axis of a parabolic flow u_x = −a (y² + z²), a = 0.1 (`scenes/relaxation.toml` with "
-      "`flow.kind=\"poiseuille\"`, p = 8, up to t = 20). A sphere without force moves, by Faxén's law, with u + (R²/6) "
-      "∇²u "
-      "= u − (2/3) a R² at its centre, of any radius in this flow, whose ∇⁴u is zero; a membrane that cannot stretch "
-      "adds "
-      "only flows on the sphere that have no divergence, and those carry no force. Spheres are held round to 3e-5 R₀ "
-      "at "
-      "the full strength of the flow, so the speed is allowed an error of 1e-4 times 2 a R max(z₀, R), and so is the "
-      "one "
-      "across. Deformed vesicles lag less; the lag over Faxén's, over the last ten time units, less 1, must vanish "
-      "with "
-      "the excess area: like Δ, so that its share of Δ is the same for ν = 0.999, 0.99 and 0.95 to within 20 %, for λ "
-      "= 1. "
-      "They drift towards the axis."};
+      "`flow.kind=\"poiseuille\"`, p = 8, up to t = 20). A sphere without force moves, by Faxén's law, with u + "
+      "(R²/6) ∇²u = u − (2/3) a R² at its centre, of any radius in this flow, whose ∇⁴u is zero; a membrane that "
+      "cannot stretch adds only flows on the sphere that have no divergence, and those carry no force. Spheres are "
+      "held round to 3e-5 R₀ at the full strength of the flow, so the speed is allowed an error of 1e-4 times 2 a R "
+      "max(z₀, R), and so is the one across. Deformed vesicles lag less; the lag over Faxén's, over the last ten "
+      "time units, less 1, must vanish with the excess area: like Δ, so that its share of Δ is the same for ν = "
+      "0.999, 0.99 and 0.95 to within 20 %, for λ = 1. They drift towards the axis."};
   s.table({"ν", "R", "z₀", "λ", "lag / ((2/3) a R²) − 1", "over Δ", "drift across, dz/dt", ""});
   struct Case {
     double nu, radius, z, contrast;

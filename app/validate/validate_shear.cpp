@@ -28,11 +28,10 @@ std::vector<double> times_of(const Samples& samples) {
 
 Section validate_tank_treading(Trials& trials) {
   Section s{
-      "Steady angle of the prolate of reduced volume 0.85 in shear, λ = 1, at γ̇t = 20, with the default tolerance. The "
-      "reference is an independent implementation of the same equations, which states 24.16 ± 0.02° and axes to four "
-      "digits; p = 8 is allowed the error of its grid besides, 0.15°, and p = 12 a third of that. Axes differ by what "
-      "is "
-      "left of the way to the steady shape, below 0.005. Area and volume are corrected in each step."};
+      "Steady angle of the prolate of reduced volume 0.85 in shear, λ = 1, at γ̇t = 20, with the default tolerance. "
+      "The reference is an independent implementation of the same equations, which states 24.16 ± 0.02° and axes to "
+      "four digits; p = 8 is allowed the error of its grid besides, 0.15°, and p = 12 a third of that. Axes differ "
+      "by what is left of the way to the steady shape, below 0.005. Area and volume are corrected in each step."};
   s.checks();
   render::Plot plot;
   plot.x = {.label = "γ̇t", .grid = true};
@@ -57,10 +56,9 @@ Section validate_tank_treading(Trials& trials) {
 
 Section validate_treading_frequency(Trials& trials) {
   Section s{
-      "Frequency of the membrane in steady tank-treading against published values (± as they state it), λ = 1, p = 8, "
-      "κ_b = 0.01, at γ̇t = 20, taken from the last state. The figure stands under [literature](#literature), whose "
-      "runs "
-      "cover more reduced volumes."};
+      "Frequency of the membrane in steady tank-treading against published values (± as they state it), λ = 1, p = "
+      "8, κ_b = 0.01, at γ̇t = 20, taken from the last state. The figure stands under [literature](#literature), "
+      "whose runs cover more reduced volumes."};
   s.checks();
   struct Case {
     double nu, frequency, tolerance;
@@ -97,9 +95,8 @@ Section validate_tumbling(Trials& trials) {
 
 Section validate_quasi_spherical(Trials& trials) {
   Section s{
-      "Steady cos 2θ/√Δ in strong shear for ν = 0.999 against the limit Δ → 0, (23λ + 32)/(120 √(2π/15)); p = 8, γ̇t = "
-      "40. "
-      "Allowed are 1.5 %, of the order of the next term, Δ times the square of the number itself."};
+      "Steady cos 2θ/√Δ in strong shear for ν = 0.999 against the limit Δ → 0, (23λ + 32)/(120 √(2π/15)); p = 8, "
+      "γ̇t = 40. Allowed are 1.5 %, of the order of the next term, Δ times the square of the number itself."};
   s.checks();
   std::vector<double> contrasts, found, limits, theory;
   for (double contrast = 0; contrast <= 6.01; contrast += 0.25) {
@@ -128,10 +125,8 @@ Section validate_quasi_spherical(Trials& trials) {
 Section validate_literature(Trials& trials) {
   Section s{
       "Steady angles and frequencies that others computed, read from their figures to ± 0.002 π; here p = 8, κ_b = "
-      "0.01, "
-      "γ̇t = 40. For information: this is what two methods differ by. At ν = 0.974 ours does not change with p (8, 12) "
-      "or "
-      "κ_b (0.01 to 1) by more than 0.0005 π and goes on to the quasi-spherical limit above."};
+      "0.01, γ̇t = 40. For information: this is what two methods differ by. At ν = 0.974 ours does not change with "
+      "p (8, 12) or κ_b (0.01 to 1) by more than 0.0005 π and goes on to the quasi-spherical limit above."};
   s.table({"λ", "ν", "angle / π", "published", "difference", "frequency / γ̇"});
   std::vector<SteadyPoint> points;
   for (const LiteraturePoint& p : literature_angles()) {
@@ -155,17 +150,12 @@ Section validate_literature(Trials& trials) {
 Section validate_jeffery(Trials& trials) {
   Section s{
       "A prolate of axes 2:1 (ν = 0.8950367), κ_b = 0.01, in shear, p = 12, tolerance 1e-4 (`scenes/tumbling.toml` "
-      "with "
-      "`vesicle.viscosity_contrast`): the time of half a turn, from −0° to −180°. A membrane that cannot stretch round "
-      "a "
-      "fluid that cannot be sheared is a rigid body, so the limit λ → ∞ is Jeffery's orbit, π(r + 1/r) = 7.853982 for "
-      "r = "
-      "2. The correction is c/λ + d/λ² + ...: times λ it must tend to a constant, and two values of λ extrapolate the "
-      "limit but for −d/(λ₁λ₂), with d ≈ 144 from the first two rows: 0.005; three values but for a term of the next "
-      "order "
-      "and for errors of resolution of some 1e-4. Keller and Skalak's ellipsoid of fixed shape has the same limit and "
-      "a c "
-      "of the same size; no exact c is known to us."};
+      "with `vesicle.viscosity_contrast`): the time of half a turn, from −0° to −180°. A membrane that cannot "
+      "stretch round a fluid that cannot be sheared is a rigid body, so the limit λ → ∞ is Jeffery's orbit, π(r + "
+      "1/r) = 7.853982 for r = 2. The correction is c/λ + d/λ² + ...: times λ it must tend to a constant, and two "
+      "values of λ extrapolate the limit but for −d/(λ₁λ₂), with d ≈ 144 from the first two rows: 0.005; three "
+      "values but for a term of the next order and for errors of resolution of some 1e-4. Keller and Skalak's "
+      "ellipsoid of fixed shape has the same limit and a c of the same size; no exact c is known to us."};
   s.table({"λ", "half turn", "(half turn − 7.853982) λ", "that of Keller and Skalak"});
   const double limit = jeffery_half_turn(2);
   constexpr std::array contrasts{30.0, 100.0, 300.0};

@@ -25,6 +25,7 @@ Section validate_literature(Trials&);
 Section validate_poiseuille(Trials&);
 Section validate_encounter(Trials&);
 Section validate_reversibility(Trials&);
+Section validate_modes(Trials&);
 Section validate_relaxation(Trials&);
 Section validate_equilibria(Trials&);
 Section validate_schemes(Trials&);
