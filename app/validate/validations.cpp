@@ -22,7 +22,7 @@ const std::vector<ValidationRow>& validations() {
       {"encounter", "how far two vesicles that pass push each other aside", 500, validate_encounter},
       {"reversibility", "without bending, a flow that turns back brings every point back", 100, validate_reversibility},
       {"modes", "waves on a nearly spherical vesicle decay at the rates of linear theory", 60, validate_modes},
-      {"relaxation", "energies of shapes at rest, with fixed steps", 100, validate_relaxation},
+      {"relaxation", "energies of shapes at rest, at the default tolerance", 100, validate_relaxation},
       {"equilibria", "energies of shapes at rest against exact minima, as the order grows", 300, validate_equilibria},
       {"schemes", "errors of fixed steps, by scheme", 60, validate_schemes},
       {"long-runs", "treading and tumbling up to 1000 shear times, without drift", 500, validate_long_runs},
