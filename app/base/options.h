@@ -32,6 +32,7 @@ struct Options {
   std::filesystem::path mask, junit, html, diff;
   bool json = false, update = false;
   std::string vary, values, quantities;  ///< of `converge`, as given
+  std::vector<std::string> axes;         ///< --vary KEY=VALUES of `sweep`, in order
   bool quick = false, full = false;      ///< --quick, --full
 };
 

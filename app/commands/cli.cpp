@@ -2,6 +2,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
+#include "app/base/share.h"
 #include "app/base/version.h"
 #include "app/commands/commands.h"
 #include "app/commands/manual.h"
@@ -46,6 +47,15 @@ bool read_two(std::string_view text, char between, int& first, int& second) {
 }
 
 void parse_shard(Options& options, const std::string& text) {
+  if (text == "auto") {
+    const std::optional<Share> share = share_of_environment();
+    if (!share)
+      throw CLI::ValidationError("--shard",
+                                 "there is neither a rank of MPI nor a task of a Slurm array here; give i/n");
+    options.shard = share->index;
+    options.shards = share->count;
+    return;
+  }
   if (read_two(text, '/', options.shard, options.shards) && 0 <= options.shard && options.shard < options.shards)
     return;
   throw CLI::ValidationError("--shard", fmt::format("'{}' is not i/n with 0 <= i < n", text));
@@ -124,6 +134,24 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) {
        app.add_option("-j,--jobs", o.jobs, "threads of each run (default: 1)")->check(CLI::Range(1, 1024));
      }},
+    {"to-sweep",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output, "the folder of the results (default: sweep/ and the scene's name)");
+     }},
+    {"runs",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-j,--jobs", o.jobs, "runs at a time, each in one thread (default: one, in all threads)")
+           ->check(CLI::Range(1, 1024));
+     }},
+    {"axes",
+     [](CLI::App& app, Options& o) {
+       app.add_option(
+              "--vary", o.axes,
+              "a key and its values: A,B,... or ranges FIRST:LAST:STEP, FIRST:LAST:*FACTOR (any number of times)")
+           ->required()
+           ->allow_extra_args(false)
+           ->type_name("KEY=VALUES");
+     }},
     {"threads",
      [](CLI::App& app, Options& o) {
        app.add_option("-j,--jobs", o.jobs, "threads (default: numerics.threads of the scene)")
@@ -200,7 +228,9 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) {
        app.add_option_function<std::string>(
               "--shard", [&o](const std::string& text) { parse_shard(o, text); },
-              "i/n: draw frames i, i + n, i + 2n, ... only")
+              "i/n: only every n-th piece of the work, from number i on; auto: as the rank of MPI or the task of a "
+              "Slurm "
+              "array tells")
            ->type_name("I/N");
      }},
     {"style",

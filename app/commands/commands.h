@@ -21,6 +21,7 @@ int list(const Options&);
 int reproduce(const Options&);
 int converge(const Options&);
 int validate(const Options&);  ///< 1 when a value misses its reference
+int sweep(const Options&);
 
 std::vector<std::string_view> reproduction_names();  ///< the items of `reproduce`
 std::vector<std::string_view> validation_names();    ///< ... of `validate`
@@ -44,6 +45,9 @@ inline constexpr Command commands[] = {
      "", "SCENE", false,
      "to-study threads set variation results dry-run quiet figure-size theme font-size font text force-study",
      converge},
+    {"sweep", "a scene with all combinations of the values of some keys: a folder each, one table, the phase diagram",
+     "", "SCENE", false,
+     "to-sweep runs set axes results shard dry-run quiet figure-size theme font-size font text force-study", sweep},
     {"render", "the pictures alone: draws a trajectory again with another view or style; several side by side", "",
      "TRAJECTORY", true,
      "to-pictures processes set-pictures quiet gl shader-dir shard style size format time force-file", render},

@@ -218,6 +218,7 @@ _tanktread() {{
     mapfile -t COMPREPLY < <(compgen -W {} -- "$word")
     return
   fi
+  [ "$command $before" != "sweep --vary" ] || before=--set
   case $before in
     --set)
       compopt -o nospace

@@ -37,6 +37,7 @@ struct Parameter {
       false;  ///< optionals that only some kinds have: what holds is computed, so these kinds do without the key
   std::string_view refused = {};  ///< not empty: the key is reserved; giving it is an error with this sentence
   bool is_path = false;           ///< a file name
+  std::string_view instead = {};  ///< what to give where a value is refused
 };
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -209,7 +210,8 @@ void visit(P& p, V&& v) {
               .unit = "",
               .meaning = "lambda, viscosity inside / outside",
               .minimum = 0,
-              .exclusive_minimum = true},
+              .exclusive_minimum = true,
+              .instead = "0.001 is near a bubble, 1000 near a rigid body"},
     p.viscosity_contrast);
   v(Parameter{.name = "bending_modulus",
               .unit = "force length",

@@ -50,12 +50,6 @@ std::vector<Coefficients> velocities_of_less(const Model& s, const Dynamics& bef
   return velocities;
 }
 
-/// Error of position, in area radii, that a degree leaves where the nearest neighbour is `gap` area radii away.
-double film_error(int degree, double gap) {
-  constexpr double decay = 2.1;  // measured between gaps of 0.03 and 0.2
-  return std::exp(-decay * degree * std::sqrt(gap));
-}
-
 bool any_follows(const Scene& scene) {
   return std::any_of(scene.vesicles.begin(), scene.vesicles.end(),
                      [&](const VesicleParameters& v) { return order_follows(scene.time, v); });
@@ -73,6 +67,11 @@ int more_degrees(const SpaceError& e, double allowed) {
 }
 
 }  // namespace
+
+double film_error(int degree, double gap) {
+  constexpr double decay = 2.1;  // measured between gaps of 0.03 and 0.2
+  return std::exp(-decay * degree * std::sqrt(gap));
+}
 
 std::vector<SpaceError> space_errors(const Model& s, const Dynamics& before, const Dynamics& after) {
   const double dt = after.time - before.time;

@@ -89,7 +89,7 @@ TEST_CASE("an unknown key is told with line, column and the nearest known one", 
 TEST_CASE("values out of range are told with line, column and range", "[scene]") {
   CHECK(error_of(replaced("order = 12", "order = 1")) == "s.toml:14:9: 'order' must be at least 2, at most 64, not 1");
   CHECK(error_of(replaced("order = 12", "viscosity_contrast = -1")) ==
-        "s.toml:14:22: 'viscosity_contrast' must be above 0, not -1");
+        "s.toml:14:22: 'viscosity_contrast' must be above 0, not -1; 0.001 is near a bubble, 1000 near a rigid body");
   CHECK(error_of(replaced("0.85", "1.2")) == "s.toml:13:18: 'reduced_volume' must be above 0, at most 1, not 1.2");
   CHECK(error_of(replaced("step = 0.1", "step = 0")) == "s.toml:9:8: 'step' must be above 0, not 0");
   CHECK_THAT(error_of(replaced("step = 0.1", "step = nan")), Contains("s.toml:9:8"));

@@ -1,0 +1,15 @@
+// Which share of the work is this process's, where somebody else has started several of it.
+#pragma once
+
+#include <optional>
+
+namespace app {
+
+struct Share {
+  int index = 0, count = 1;  ///< 0 <= index < count
+};
+/// From the task of a Slurm array and the rank of MPI (Open MPI, MPICH and its kin, srun), both where there are both;
+/// nothing where there is neither.
+std::optional<Share> share_of_environment();
+
+}  // namespace app
