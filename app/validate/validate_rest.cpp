@@ -49,7 +49,7 @@ Section validate_relaxation(Trials& trials) {
   s.checks();
   render::Plot plot;
   plot.x = {.label = "t", .grid = true};
-  plot.y = {.label = "E/8πκ − exact", .scale = render::Scale::logarithmic, .grid = true};
+  plot.y = {.label = "|E/8πκ − exact|", .scale = render::Scale::logarithmic, .grid = true};
   for (const std::string shape : {"prolate", "oblate"})
     for (const double nu : {0.95, 0.85}) {
       const Samples rows =
@@ -83,7 +83,9 @@ Section validate_equilibria(Trials& trials) {
       "and they turn into prolates at t = 80 to 100. Their plateau is where the energy changes least before t = 40, "
       "with the same bounds; then they must arrive at the prolate. (The prolate that they become has the poles of "
       "the grid at its side, not at its ends, and is resolved better so.) At ν = 0.65 the disc with two dimples has "
-      "the lower energy of the two, 1.82623345 against 1.82792987, and both stay what they are."};
+      "the lower energy of the two, 1.82623345 against 1.82792987, and both stay what they are. Of the "
+      "disc p = 12 is asked for 5e-6; the prolate, five times as long as thick, needs more: 2e-4 at p = 16. (At p = "
+      "12, of which the program warns, its energy comes within 2e-5 and then rises by 1.5e-3 from t = 100 to 200.)"};
   s.table({"start", "ν", "p", "plateau before 40, less exact", "end, less exact", "bound", "axes at the end", ""});
   struct Case {
     std::string shape;
@@ -99,10 +101,8 @@ Section validate_equilibria(Trials& trials) {
                         {"prolate", 0.85, 16, 1e-6},
                         {"oblate", 0.95, 12, 1e-7},
                         {"oblate", 0.85, 12, 2e-5},
-                        {"prolate", 0.65, 16, 1},
-                        {"prolate", 0.65, 20, 1},
-                        {"oblate", 0.65, 12, 5e-6},
-                        {"oblate", 0.65, 16, 1}}) {
+                        {"prolate", 0.65, 16, 2e-4},
+                        {"oblate", 0.65, 12, 5e-6}}) {
     const Samples rows =
         trials.history("relaxation", {"vesicle.shape=" + c.shape, fmt::format("vesicle.reduced_volume={}", c.nu),
                                       fmt::format("vesicle.order={}", c.order), "time.end=200", "time.tolerance=1e-3",
