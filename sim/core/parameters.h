@@ -253,8 +253,8 @@ struct NumericsParameters {
   std::string far_field = "auto";
   int interaction_order = 0;  ///< degree of the smooth source grids between vesicles; 0: p^(3/2)
   bool near_rule = true;
-  int near_latitudes = 32;
-  int near_longitudes = 32;
+  int near_latitudes = 0;   ///< 0: as the tolerance asks
+  int near_longitudes = 0;  ///< likewise
   double repulsion_strength = 0;
   std::optional<double> repulsion_range;
   std::optional<double> gap_floor;
@@ -351,15 +351,17 @@ void visit(P& p, V&& v) {
     p.near_rule);
   v(Parameter{.name = "near_latitudes",
               .unit = "",
-              .meaning = "graded latitudes of the near-singular rule",
+              .meaning = "graded latitudes of the near-singular rule; auto: as the tolerance asks",
               .minimum = 4,
-              .maximum = 512},
+              .maximum = 512,
+              .zero_is_auto = true},
     p.near_latitudes);
   v(Parameter{.name = "near_longitudes",
               .unit = "",
-              .meaning = "longitudes of the near-singular rule",
+              .meaning = "longitudes of the near-singular rule; auto: as the tolerance asks",
               .minimum = 4,
-              .maximum = 512},
+              .maximum = 512,
+              .zero_is_auto = true},
     p.near_longitudes);
   v(Parameter{.name = "repulsion_strength",
               .unit = "force/area",

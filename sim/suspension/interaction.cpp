@@ -39,6 +39,14 @@ std::vector<PairPlan> candidates(const Interaction& w, const InteractionOptions&
   return pairs;
 }
 
+NearOrder near_order(const InteractionOptions& options, int degree) {
+  constexpr double finest = 1e-6;  // the least tolerance of a run
+  NearOrder order = near_order_for(degree, std::max(options.far.tolerance, finest));
+  if (options.near_order.latitudes > 0) order.latitudes = options.near_order.latitudes;
+  if (options.near_order.longitudes > 0) order.longitudes = options.near_order.longitudes;
+  return order;
+}
+
 /// Sorts the targets of a pair: those that need the fine grid, and those that need rows.
 void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> positions, const RotationPlan& rotation,
           const InteractionOptions& options, bool only_near) {
@@ -58,7 +66,8 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
         if (nearest.inside) throw std::domain_error(fmt::format("vesicle {} crosses vesicle {}", pair.target, j));
         if (nearest.distance < options.near_spacings * s.spacing[source]) {
           pair.near.push_back(k);
-          pair.rows.push_back(near_row(rotation, positions[j], x, nearest, options.near_order, w.dual[j]));
+          pair.rows.push_back(
+              near_row(rotation, positions[j], x, nearest, near_order(options, positions[j].order), w.dual[j]));
           pair.nearest.push_back(nearest);
           continue;
         }

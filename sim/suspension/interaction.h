@@ -17,7 +17,7 @@ namespace sim {
 struct InteractionOptions {
   int source_order = 0;  ///< q of the smooth rule; 0: p^(3/2), rounded up
   bool near_rule = true;
-  NearOrder near_order;
+  NearOrder near_order{0, 0};  ///< 0: near_order_for() the tolerance of the far field
   double near_spacings = 4;    ///< targets nearer than this many local spacings use the near rule
   double coarse_spacings = 6;  ///< targets farther than this many spacings of the coarse grid use that grid; 0: none
   FarOptions far = {};
