@@ -12,6 +12,7 @@ namespace app {
 struct Options {
   std::string command;
   std::string word;                           ///< `figure NAME`, `list KIND`
+  std::vector<std::string> words;             ///< `validate NAME...`
   std::vector<std::filesystem::path> inputs;  ///< scene, trajectories, or a file to inspect
   std::filesystem::path output;               ///< -o
   std::vector<std::string> set;               ///< --set, in order

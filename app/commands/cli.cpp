@@ -126,6 +126,15 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) {
        app.add_option("-o,--output", o.output, "the folder of the results (default: converge/ and the scene's name)");
      }},
+    {"to-page",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output,
+                      "the page, NAME.md, whose other sections stay, or its folder (default: validate)");
+     }},
+    {"run-threads",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-j,--jobs", o.jobs, "threads of each run (default: 1)")->check(CLI::Range(1, 1024));
+     }},
     {"to-sweep",
      [](CLI::App& app, Options& o) {
        app.add_option("-o,--output", o.output, "the folder of the results (default: sweep/ and the scene's name)");
@@ -355,7 +364,8 @@ bool takes(const Command& command, std::string_view option) {
 void add_command(CLI::App& program, const Command& command, Options& options) {
   CLI::App* sub = program.add_subcommand(std::string(command.name), std::string(command.meaning));
   if (!command.word.empty()) {
-    CLI::Option* word = sub->add_option(std::string(command.word), options.word);
+    CLI::Option* word = command.many_words ? sub->add_option(std::string(command.word), options.words)
+                                           : sub->add_option(std::string(command.word), options.word);
     if (!command.files.empty()) word->required();
   }
   if (!command.files.empty()) {

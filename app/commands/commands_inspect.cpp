@@ -5,13 +5,13 @@
 #include "app/base/progress.h"
 #include "app/base/result_files.h"
 #include "app/commands/commands.h"
+#include "app/export/catalogue_list.h"
 #include "app/export/csv.h"
 #include "app/export/mesh_export.h"
 #include "app/export/page.h"
 #include "app/export/reference.h"
 #include "app/export/summary.h"
 #include "app/pictures/frames.h"
-#include "app/scene/catalogues.h"
 #include "app/scene/output.h"
 #include "app/scene/scene_file.h"
 #include "app/scene/trajectory_scene.h"
@@ -168,7 +168,7 @@ int list(const Options& options) {
     return 0;
   }
   std::vector<std::string_view> names;
-  for (const Catalogue& catalogue : catalogues()) {
+  for (const Catalogue& catalogue : listed_catalogues()) {
     names.push_back(catalogue.name);
     if (options.word.empty()) fmt::print("{:<12} {}\n", catalogue.name, catalogue.meaning);
     if (options.word != catalogue.name) continue;

@@ -1,7 +1,7 @@
 #include "app/export/reference.h"
 
+#include "app/export/catalogue_list.h"
 #include "app/export/csv.h"
-#include "app/scene/catalogues.h"
 #include "app/scene/scene_text.h"
 #include "app/scene/scene_values.h"
 
@@ -116,7 +116,7 @@ std::string reference_page() {
                     escaped(p.unit), escaped(allowed), escaped(p.meaning), escaped(note));
   });
   page += "\n## Catalogues\n\n`tanktread list` prints them too.\n";
-  for (const Catalogue& catalogue : catalogues()) {
+  for (const Catalogue& catalogue : listed_catalogues()) {
     bool keys = false;
     for (const auto& row : catalogue.rows) keys = keys || !row.keys.empty();
     page += fmt::format("\n### {}\n\n{}.\n\n| name | meaning |{}\n|---|---|{}\n", catalogue.name, catalogue.meaning,

@@ -71,6 +71,7 @@ TEST_CASE("bash completes commands, their options, and the words of the catalogu
   CHECK(offered({"converge", "s.toml", "--vary", ""}) == Words{"tolerance", "step", "order"});
   CHECK(offered({"converge", "s.toml", "--quantities", "half"}) == Words{"half-turn"});
   CHECK(offered({"reproduce", "table2"}) == Words{"table2"});
+  CHECK(offered({"validate", "jef"}) == Words{"jeffery"});
   CHECK(offered({"run", "s.toml", "--set", "vesicle.ord"}) == Words{"vesicle.order="});
   CHECK(offered({"run", "sce"}).empty());  // a file: bash's own completion takes over
   const Words styles = offered({"render", "t.h5", "--style", ""});
