@@ -16,7 +16,7 @@ constexpr int components = 12;  ///< six of S, six of D
 struct SpectrumRows {
   std::array<int, 4> first{};
   int count = 0;
-  std::vector<int> consecutive;  ///< 0, 12, 24, ...: rows of consecutive components
+  std::vector<std::vector<int>> coefficients;  ///< [row, parity of n - m]: where its degrees n stand among [nm][12]
   explicit SpectrumRows(const FoldedGrid&);
 };
 

@@ -1,5 +1,7 @@
 #include "sim/sphere/grid_transform.h"
 
+#include "sim/sphere/fourier_sums.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -62,35 +64,6 @@ void in_fours(int count, F&& f) {
   in_threes(count - at, [&](auto width, int from) { f(width, at + from); });
 }
 
-/// One to four vectors as named members, which compilers keep in registers where arrays would go through memory.
-template <int W>
-struct Pack {
-  Lane a{}, b{}, c{}, d{};
-
-  static Pack load(const Lane* x) {
-    Pack v;
-    v.a = x[0];
-    if constexpr (W > 1) v.b = x[1];
-    if constexpr (W > 2) v.c = x[2];
-    if constexpr (W > 3) v.d = x[3];
-    return v;
-  }
-  void store(Lane* x) const {
-    x[0] = a;
-    if constexpr (W > 1) x[1] = b;
-    if constexpr (W > 2) x[2] = c;
-    if constexpr (W > 3) x[3] = d;
-  }
-  void add(double k, const Lane* x) {
-    a += k * x[0];
-    if constexpr (W > 1) b += k * x[1];
-    if constexpr (W > 2) c += k * x[2];
-    if constexpr (W > 3) d += k * x[3];
-  }
-  friend Pack operator+(const Pack& x, const Pack& y) { return {x.a + y.a, x.b + y.b, x.c + y.c, x.d + y.d}; }
-  friend Pack operator-(const Pack& x, const Pack& y) { return {x.a - y.a, x.b - y.b, x.c - y.c, x.d - y.d}; }
-};
-
 /// out[r] = sum_k a[r][k] b[k] for R rows of scalars and W vectors.
 template <int R, int W>
 void scalar_rows(const double* a, int depth, const Lane* b, std::ptrdiff_t b_row, Lane* out, std::ptrdiff_t out_row) {
@@ -103,38 +76,6 @@ void scalar_rows(const double* a, int depth, const Lane* b, std::ptrdiff_t b_row
   x.store(out);
   if constexpr (R > 1) y.store(out + out_row);
   if constexpr (R > 2) z.store(out + 2 * out_row);
-}
-
-/// Samples of W vectors at the members f, -f, pi - f and pi + f of an orbit.
-template <int W>
-struct Mirrored {
-  Pack<W> member[4];
-};
-
-/// Fourier sums; `table` is the orbit's row of the Fourier table, cosine and sine rows are counted from m = 0.
-template <int W>
-inline __attribute__((always_inline)) Mirrored<W> fourier_sums(const double* table, int p, int degree, bool mean,
-                                                               const Lane* cosines, const Lane* sines,
-                                                               std::ptrdiff_t row) {
-  Pack<W> cos_even, cos_odd, sin_even, sin_odd;
-  const Lane* x = cosines;
-  const Lane* y = sines;
-  if (mean) cos_even.add(table[0], x);
-  int m = 1;
-  for (; m < degree; m += 2) {
-    cos_odd.add(table[m], x + row);
-    sin_odd.add(table[p + m], y + row);
-    x += 2 * row;
-    y += 2 * row;
-    cos_even.add(table[m + 1], x);
-    sin_even.add(table[p + m + 1], y);
-  }
-  if (m == degree) {
-    cos_odd.add(table[m], x + row);
-    sin_odd.add(table[p + m], y + row);
-  }
-  const Pack<W> even = cos_even + cos_odd, odd = cos_even - cos_odd, s = sin_even + sin_odd, t = sin_even - sin_odd;
-  return {{even + s, even - s, odd - t, odd + t}};
 }
 
 /// Where the vectors of a group go on the first longitude; only some lanes of the last of a column are kept.
@@ -156,13 +97,6 @@ struct Columns {
     }
   }
 };
-
-/// Sums over the lanes of each of four vectors.
-Lane lane_sums(Lane a, Lane b, Lane c, Lane d) {
-  const Lane u = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Lane v = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  return __builtin_shufflevector(u, v, 0, 1, 4, 5) + __builtin_shufflevector(u, v, 2, 3, 6, 7);
-}
 
 /// R scalar products of vectors of `count` lanes, rows of a following each other.
 template <int R>
@@ -199,17 +133,7 @@ GridTransform::GridTransform(int order, const GaussLegendre& rule, int longitude
     if (l == 0) orbit.index[1] = orbit.index[3] = -1;
     if (4 * l == nlon_) orbit.index[2] = orbit.index[3] = -1;
     orbits_.push_back(orbit);
-    for (int d = 0; d < 3; ++d) {
-      std::vector<double>& rows = fourier_[d];
-      rows.resize(rows.size() + std::size_t(2 * p_ + 1));
-      double* row = rows.data() + rows.size() - (2 * p_ + 1);
-      for (int m = 0; m <= p_; ++m) {
-        const double angle = 2 * pi * ((std::int64_t(m) * l) % nlon_) / nlon_,
-                     k = (m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi)) * std::pow(m, d);
-        row[m] = (d == 2 ? -k : k) * std::cos(angle);  // the sines for an odd derivative
-        if (m > 0) row[p_ + m] = (d == 0 ? k : -k) * std::sin(angle);
-      }
-    }
+    for (int d = 0; d < 3; ++d) append_fourier_row(fourier_[d], p_, l, nlon_, d);
   }
 }
 

@@ -80,7 +80,8 @@ TEST_CASE("a velocity is its rigid part and a rest that has none, in any place")
 
 TEST_CASE("a frame carries positions as its equations of motion say") {
   const Coefficients x = initial_position(lone(1, 4, 0.1).vesicles[0]);
-  Frame f{{{1, 0.5, -2}, {0.3, -1.1, 0.4}, {2, 1, 0}}, {}, {}};
+  Frame f;
+  f.motion = {{1, 0.5, -2}, {0.3, -1.1, 0.4}, {2, 1, 0}};
   f.drift << 0.2, -0.5, 1, 0.3, 0, 0.1, -0.4, 0.6, -0.2;
   for (const double time : {1e-3, 0.7, -4.0}) {
     // d/dt of the carried position is the frame's motion where it is: central differences, whose error is of the order
