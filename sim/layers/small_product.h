@@ -3,7 +3,7 @@
 // needs a shuffle.
 #pragma once
 
-#include "sim/core/lanes.h"
+#include "sim/core/packs.h"
 
 #include <cstddef>
 

@@ -2,7 +2,7 @@
 // cosines and sines of even and odd m are even or odd, which leaves a quarter of the products.
 #pragma once
 
-#include "sim/core/lanes.h"
+#include "sim/core/packs.h"
 
 #include <cmath>
 #include <cstdint>
