@@ -48,10 +48,16 @@ inline void multiply(const SmallMatrix& m, int width, const Lane* b, RowsB b_row
     for (int w = 0; w < width; w += 3) product_rows<R>(m, row, b + w, b_row, c + w, c_row);
     row += R;
   };
-  while (m.rows - row >= 4) all.template operator()<4>();
-  if (m.rows - row == 3) all.template operator()<3>();
-  if (m.rows - row == 2) all.template operator()<2>();
-  if (m.rows - row == 1) all.template operator()<1>();
+  while (const int left = m.rows - row) {  // panels as even as possible: 5 rows are 3 and 2
+    if (left >= 10 || left % 4 == 0 || left == 7)
+      all.template operator()<4>();
+    else if (left >= 3)
+      all.template operator()<3>();
+    else if (left == 2)
+      all.template operator()<2>();
+    else
+      all.template operator()<1>();
+  }
 }
 
 }  // namespace sim

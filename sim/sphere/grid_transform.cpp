@@ -66,16 +66,17 @@ void in_fours(int count, F&& f) {
 
 /// out[r] = sum_k a[r][k] b[k] for R rows of scalars and W vectors.
 template <int R, int W>
-void scalar_rows(const double* a, int depth, const Lane* b, std::ptrdiff_t b_row, Lane* out, std::ptrdiff_t out_row) {
+void scalar_rows(const double* a, int depth, const Lane* b, std::ptrdiff_t b_row, Lane* const* out,
+                 std::ptrdiff_t out_at) {
   Pack<W> x, y, z;
   for (int k = 0; k < depth; ++k, b += b_row) {
     x.add(a[k], b);
     if constexpr (R > 1) y.add(a[depth + k], b);
     if constexpr (R > 2) z.add(a[2 * depth + k], b);
   }
-  x.store(out);
-  if constexpr (R > 1) y.store(out + out_row);
-  if constexpr (R > 2) z.store(out + 2 * out_row);
+  x.store(out[0] + out_at);
+  if constexpr (R > 1) y.store(out[1] + out_at);
+  if constexpr (R > 2) z.store(out[2] + out_at);
 }
 
 /// Where the vectors of a group go on the first longitude; only some lanes of the last of a column are kept.
@@ -83,10 +84,12 @@ template <int W>
 struct Columns {
   double* to[W];
   int kept[W];
-  bool whole = true;
+  std::ptrdiff_t latitudes;
 
-  void write(std::ptrdiff_t at, const Pack<W>& v) const {
-    if (whole) {
+  template <bool whole>
+  void write(std::ptrdiff_t longitude, const Pack<W>& v) const {
+    const std::ptrdiff_t at = longitude * latitudes;
+    if constexpr (whole) {
       store_lane(to[0] + at, v.a);
       if constexpr (W > 1) store_lane(to[1] + at, v.b);
       if constexpr (W > 2) store_lane(to[2] + at, v.c);
@@ -97,6 +100,59 @@ struct Columns {
     }
   }
 };
+
+/// A Fourier half of a spectrum: its rows of cosines and sines, counted from m = 0.
+struct Series {
+  const Lane *cosines, *sines;
+  std::ptrdiff_t row;
+  int degree;
+  bool mean;
+};
+
+/// Fourier synthesis at all longitudes, orbit by orbit.
+template <bool whole, int W>
+void write_orbits(const double* table, int p, const Series series, int longitudes, const Columns<W> columns) {
+  const std::ptrdiff_t width = 2 * p + 1, half = longitudes / 2;
+  const auto sums = [&](std::ptrdiff_t l) {
+    return fourier_sums<W>(table + l * width, p, series.degree, series.mean, series.cosines, series.sines, series.row);
+  };
+  const Mirrored<W> axis = sums(0);
+  columns.template write<whole>(0, axis.member[0]);
+  columns.template write<whole>(half, axis.member[2]);
+  std::ptrdiff_t l = 1;
+  for (; 4 * l < longitudes; ++l) {
+    const Mirrored<W> f = sums(l);
+    columns.template write<whole>(l, f.member[0]);
+    columns.template write<whole>(longitudes - l, f.member[1]);
+    columns.template write<whole>(half - l, f.member[2]);
+    columns.template write<whole>(half + l, f.member[3]);
+  }
+  if (4 * l > longitudes) return;
+  const Mirrored<W> across = sums(l);
+  columns.template write<whole>(l, across.member[0]);
+  columns.template write<whole>(longitudes - l, across.member[1]);
+}
+
+/// Sums of samples over the mirrors of every orbit, [cos even, cos odd, sin even, sin odd][orbit][width]: one of the
+/// vectors. `kept`: lanes, a constant where it is all.
+template <class Kept>
+void fold_orbits(const double* from, std::ptrdiff_t latitudes, std::ptrdiff_t longitudes, Kept kept, Lane* sums,
+                 std::ptrdiff_t width) {
+  const std::ptrdiff_t half = longitudes / 2, kind = (longitudes / 4 + 1) * width;
+  const auto member = [=](std::ptrdiff_t j) { return load_some(from + j * latitudes, kept); };
+  const auto write = [=](std::ptrdiff_t l, Lane f, Lane g, Lane h, Lane i) {
+    const Lane a = f + g, b = h + i, c = f - g, d = h - i;
+    Lane* to = sums + l * width;
+    to[0] = a + b;
+    to[kind] = a - b;
+    to[2 * kind] = c - d;
+    to[3 * kind] = c + d;
+  };
+  write(0, member(0), Lane{}, member(half), Lane{});
+  std::ptrdiff_t l = 1;
+  for (; 4 * l < longitudes; ++l) write(l, member(l), member(longitudes - l), member(half - l), member(half + l));
+  if (4 * l == longitudes) write(l, member(l), member(longitudes - l), Lane{}, Lane{});
+}
 
 /// R scalar products of vectors of `count` lanes, rows of a following each other.
 template <int R>
@@ -128,37 +184,32 @@ GridTransform::GridTransform(int order, const GaussLegendre& rule, int longitude
         weighted_.get()[k * lanes_ + v][e] = i < nlat_ ? table.value(i, k) * rule.weight[i] * (2 * pi / nlon_) : 0;
       }
   if (!dense) return;
-  for (int l = 0; 4 * l <= nlon_; ++l) {
-    Orbit orbit{{l, (nlon_ - l) % nlon_, nlon_ / 2 - l, nlon_ / 2 + l}};
-    if (l == 0) orbit.index[1] = orbit.index[3] = -1;
-    if (4 * l == nlon_) orbit.index[2] = orbit.index[3] = -1;
-    orbits_.push_back(orbit);
+  for (int l = 0; l < orbits(); ++l)
     for (int d = 0; d < 3; ++d) append_fourier_row(fourier_[d], p_, l, nlon_, d);
-  }
 }
 
 void GridTransform::along_latitudes(const double* coefficients, int degree, int fields, TableRange range,
                                     Lane* spectrum) const {
   const Eigen::Index count = coefficient_count(degree);
   const std::ptrdiff_t row = std::ptrdiff_t(range.count()) * fields * lanes_;
-  std::vector<double> gathered(std::size_t(degree + 1) * 3);
+  std::vector<double> gathered(std::size_t(degree + 1) * 2 * fields);
+  std::vector<Lane*> out(std::size_t(2) * fields);
   for (int m = 0; m <= degree; ++m) {
-    const int depth = degree - m + 1;
-    for (const int sign : {1, -1}) {
-      if (m == 0 && sign < 0) continue;
-      Lane* out = spectrum + (sign > 0 ? m : p_ + m) * row;
-      in_threes(fields, [&](auto height, int field) {
-        constexpr int R = decltype(height)::value;
-        for (int r = 0; r < R; ++r)
-          for (int n = m; n <= degree; ++n)
-            gathered[std::size_t(r) * depth + n - m] =
-                coefficients[(field + r) * count + coefficient_index(n, sign * m)];
-        for (int t = range.first; t < range.last; ++t)
-          in_fours(lanes_, [&](auto width, int lane) {
-            scalar_rows<R, decltype(width)::value>(
-                gathered.data(), depth, legendre_[t].get() + first_of(m) * lanes_ + lane, lanes_,
-                out + (std::ptrdiff_t(t - range.first) * fields + field) * lanes_ + lane, lanes_);
-          });
+    const int depth = degree - m + 1, rows = (m == 0 ? 1 : 2) * fields;
+    for (int r = 0; r < rows; ++r) {
+      const int field = r % fields, sign = r < fields ? 1 : -1;
+      const double* c = coefficients + field * count;
+      for (int n = m; n <= degree; ++n) gathered[std::size_t(r) * depth + n - m] = c[coefficient_index(n, sign * m)];
+      out[r] = spectrum + (sign > 0 ? m : p_ + m) * row + field * lanes_;
+    }
+    for (int t = range.first; t < range.last; ++t) {
+      const Lane* table = legendre_[t].get() + first_of(m) * lanes_;
+      const std::ptrdiff_t start = std::ptrdiff_t(t - range.first) * fields * lanes_;
+      in_fours(lanes_, [=, this, &gathered, &out](auto width, int lane) {
+        in_threes(rows, [=, this, &gathered, &out](auto height, int r) {
+          scalar_rows<decltype(height)::value, decltype(width)::value>(gathered.data() + r * depth, depth, table + lane,
+                                                                       lanes_, out.data() + r, start + lane);
+        });
       });
     }
   }
@@ -166,68 +217,47 @@ void GridTransform::along_latitudes(const double* coefficients, int degree, int 
 
 void GridTransform::around(const Lane* spectrum, int degree, int fields, TableRange made, const Wanted& wanted) const {
   const std::ptrdiff_t row = std::ptrdiff_t(made.count()) * fields * lanes_;
-  const int width = 2 * p_ + 1, last = nlat_ - (lanes_ - 1) * lanes;
+  const int last = nlat_ - (lanes_ - 1) * lanes;
   for (int d = 0; d < 3; ++d) {
     const TableRange range = wanted.tables[d];
-    const int vectors = range.count() * fields * lanes_;
     const Lane* first = spectrum + std::ptrdiff_t(range.first - made.first) * fields * lanes_;
-    in_threes(vectors, [&](auto group, int at) {
+    in_threes(range.count() * fields * lanes_, [&](auto group, int at) {
       constexpr int W = decltype(group)::value;
       Columns<W> columns;
+      columns.latitudes = nlat_;
+      bool whole = true;
       for (int w = 0; w < W; ++w) {
         const int column = (at + w) / lanes_, lane = (at + w) % lanes_;
         columns.to[w] = wanted.out[d][range.first + column / fields] + std::ptrdiff_t(column % fields) * nlat_ * nlon_ +
                         lane * lanes;
         columns.kept[w] = lane == lanes_ - 1 ? last : lanes;
-        columns.whole = columns.whole && columns.kept[w] == lanes;
+        whole = whole && columns.kept[w] == lanes;
       }
-      const Lane* cosines = first + at;
-      const Lane* sines = cosines + p_ * row;
-      if (d == 1) std::swap(cosines, sines);
-      const double* table = fourier_[d].data();
-      const std::ptrdiff_t half = nlon_ / 2;
-      for (std::size_t l = 0; l < orbits_.size(); ++l, table += width) {
-        const Mirrored<W> f = fourier_sums<W>(table, p_, degree, d == 0, cosines, sines, row);
-        const int* index = orbits_[l].index;
-        columns.write(std::ptrdiff_t(l) * nlat_, f.member[0]);
-        if (index[1] >= 0) columns.write((nlon_ - std::ptrdiff_t(l)) * nlat_, f.member[1]);
-        if (index[2] >= 0) columns.write((half - std::ptrdiff_t(l)) * nlat_, f.member[2]);
-        if (index[3] >= 0) columns.write((half + std::ptrdiff_t(l)) * nlat_, f.member[3]);
-      }
+      Series series{first + at, first + at + p_ * row, row, degree, d == 0};
+      if (d == 1) std::swap(series.cosines, series.sines);
+      if (whole)
+        write_orbits<true, W>(fourier_[d].data(), p_, series, nlon_, columns);
+      else
+        write_orbits<false, W>(fourier_[d].data(), p_, series, nlon_, columns);
     });
   }
 }
 
 void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectrum) const {
   const int vectors = fields * lanes_, width = 2 * p_ + 1, last = nlat_ - (lanes_ - 1) * lanes;
-  const int orbits = int(orbits_.size());
-  LaneBuffer folded(std::size_t(orbits) * 4 * 3);
+  const int count = orbits();
+  LaneBuffer folded(std::size_t(count) * 4 * 3);
   in_threes(vectors, [&](auto group, int at) {
     constexpr int W = decltype(group)::value;
-    Lane* const sums = folded.get();  // [cos even, cos odd, sin even, sin odd][orbit][W]
-    const std::ptrdiff_t kind = std::ptrdiff_t(orbits) * W;
+    Lane* const sums = folded.get();
+    const std::ptrdiff_t kind = std::ptrdiff_t(count) * W;
     for (int w = 0; w < W; ++w) {
       const int field = (at + w) / lanes_, lane = (at + w) % lanes_;
       const double* from = samples + std::ptrdiff_t(field) * nlat_ * nlon_ + lane * lanes;
-      const auto fold = [&](auto kept) {
-        const auto member = [&](std::ptrdiff_t j) { return load_some(from + j * nlat_, kept); };
-        for (int l = 0; l < orbits; ++l) {
-          const bool on_axis = l == 0, across = 4 * l == nlon_;
-          const Lane f = member(l), g = on_axis ? Lane{} : member(nlon_ - l),
-                     h = across ? Lane{} : member(nlon_ / 2 - l),
-                     i = on_axis || across ? Lane{} : member(nlon_ / 2 + l);
-          const Lane a = f + g, b = h + i, c = f - g, d = h - i;
-          Lane* to = sums + l * W + w;
-          to[0] = a + b;
-          to[kind] = a - b;
-          to[2 * kind] = c - d;
-          to[3 * kind] = c + d;
-        }
-      };
       if (lane < lanes_ - 1 || last == lanes)
-        fold(std::integral_constant<int, lanes>{});
+        fold_orbits(from, nlat_, nlon_, std::integral_constant<int, lanes>{}, sums + w, W);
       else
-        fold(last);
+        fold_orbits(from, nlat_, nlon_, last, sums + w, W);
     }
     for (int part = 0; part < 4; ++part) {
       const int start = part == 0 ? 0 : part == 2 ? 2 : 1;
@@ -237,7 +267,7 @@ void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectru
         Pack<W> s, t, u, v;
         const double* table = fourier_[0].data() + first + 2 * r0;
         const Lane* x = sums + part * kind;
-        for (int l = 0; l < orbits; ++l, table += width, x += W) {
+        for (int l = 0; l < count; ++l, table += width, x += W) {
           s.add(table[0], x);
           if constexpr (R > 1) t.add(table[2], x);
           if constexpr (R > 2) u.add(table[4], x);

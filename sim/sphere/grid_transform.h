@@ -44,11 +44,8 @@ class GridTransform {
   void project(const Lane* spectrum, int fields, double* coefficients) const;
 
  private:
-  struct Orbit {
-    int index[4];  ///< f, -f, pi - f, pi + f; -1 where the orbit has no separate such member
-  };
+  int orbits() const { return nlon_ / 4 + 1; }
   int p_, nlat_, nlon_, lanes_;
-  std::vector<Orbit> orbits_;
   std::array<LaneBuffer, 3> legendre_;          ///< [m][n][lane]
   LaneBuffer weighted_;                         ///< likewise, with weights
   std::array<std::vector<double>, 3> fourier_;  ///< [derivative][orbit][row]
