@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <memory>
+#include <new>
 
 namespace sim {
 
@@ -36,6 +39,16 @@ template <class Real>
 void store_lane(Real* to, LaneOf<Real> v) {
   __builtin_memcpy(to, &v, sizeof v);
 }
+
+/// Uninitialised aligned memory for vectors.
+struct LaneBuffer {
+  explicit LaneBuffer(std::size_t n) : data(new (std::align_val_t(64)) Lane[n]) {}
+  struct Free {
+    void operator()(Lane* p) const { ::operator delete[](p, std::align_val_t(64)); }
+  };
+  std::unique_ptr<Lane[], Free> data;
+  Lane* get() const { return data.get(); }
+};
 
 template <class Vector>
 Vector lane_sqrt(Vector v) {

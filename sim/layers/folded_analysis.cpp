@@ -1,7 +1,5 @@
 #include "sim/layers/folded_analysis.h"
 
-#include <algorithm>
-
 namespace sim {
 
 SpectrumRows::SpectrumRows(const FoldedGrid& g) {
@@ -9,7 +7,13 @@ SpectrumRows::SpectrumRows(const FoldedGrid& g) {
     first[b] = count;
     count += int(g.blocks[b].m.size());
   }
-  for (int k = 0; k < std::max(int(g.orbits.size()), g.half); ++k) consecutive.push_back(components * k);
+  for (int b = 0; b < 4; ++b)
+    for (const int m : g.blocks[b].m)
+      for (int parity = 0; parity < 2; ++parity) {
+        coefficients.emplace_back();
+        for (int n = m + parity; n <= g.p; n += 2)
+          coefficients.back().push_back(coefficient_index(n, b < 2 ? m : -m) * components);
+      }
 }
 
 void fold(const Lane* samples, Lane* folded, std::ptrdiff_t stride, int width) {
@@ -34,32 +38,23 @@ void fold(const Lane* samples, Lane* folded, std::ptrdiff_t stride, int width) {
 void fourier_analysis(const FoldedGrid& g, const SpectrumRows& r, const Lane* folded, Lane* spectrum, int latitude,
                       int width) {
   const int orbits = int(g.orbits.size());
-  std::vector<int> rows;
   for (int parity = 0; parity < 2; ++parity)
-    for (int b = 0; b < 4; ++b) {
-      const int count = int(g.blocks[b].m.size());
-      if (count == 0) continue;
-      rows.clear();
-      for (int k = 0; k < count; ++k)
-        rows.push_back(((parity * r.count + r.first[b] + k) * g.half + latitude) * components);
-      const SmallProduct product{count, orbits, g.blocks[b].table.data(), orbits, r.consecutive.data(), rows.data()};
-      multiply(product, width, folded + std::ptrdiff_t(parity * 4 + b) * orbits * components, spectrum);
-    }
+    for (int b = 0; b < 4; ++b)
+      multiply({int(g.blocks[b].m.size()), orbits, g.blocks[b].table.data()}, width,
+               folded + std::ptrdiff_t(parity * 4 + b) * orbits * components, EqualRows{components},
+               spectrum + (std::ptrdiff_t(parity * r.count + r.first[b]) * g.half + latitude) * components,
+               EqualRows{std::ptrdiff_t(g.half) * components});
 }
 
 void legendre_analysis(const FoldedGrid& g, const SpectrumRows& r, const Lane* spectrum, Lane* out, int width) {
-  std::vector<int> rows;
   for (int b = 0; b < 4; ++b)
     for (std::size_t k = 0; k < g.blocks[b].m.size(); ++k)
       for (int parity = 0; parity < 2; ++parity) {
-        const int m = g.blocks[b].m[k], sign = b < 2 ? 1 : -1;
-        rows.clear();
-        for (int n = m + parity; n <= g.p; n += 2) rows.push_back(coefficient_index(n, sign * m) * components);
-        if (rows.empty()) continue;
-        const SmallProduct product{int(rows.size()),     g.half,     g.legendre[parity][m].data(), g.half,
-                                   r.consecutive.data(), rows.data()};
-        multiply(product, width,
-                 spectrum + std::ptrdiff_t(parity * r.count + r.first[b] + int(k)) * g.half * components, out);
+        const int m = g.blocks[b].m[k], at = r.first[b] + int(k);
+        const std::vector<int>& rows = r.coefficients[std::size_t(2 * at + parity)];
+        multiply({int(rows.size()), g.half, g.legendre[parity][m].data()}, width,
+                 spectrum + std::ptrdiff_t(parity * r.count + at) * g.half * components, EqualRows{components}, out,
+                 ListedRows(rows.data()));
       }
 }
 

@@ -6,29 +6,17 @@
 #include "sim/layers/small_product.h"
 
 #include <array>
-#include <memory>
-#include <new>
 #include <vector>
 
 namespace sim {
 
 constexpr int components = 12;  ///< six of S, six of D
 
-/// Uninitialised aligned scratch of SIMD vectors.
-struct LaneBuffer {
-  explicit LaneBuffer(std::size_t n) : data(new (std::align_val_t(64)) Lane[n]) {}
-  struct Free {
-    void operator()(Lane* p) const { ::operator delete[](p, std::align_val_t(64)); }
-  };
-  std::unique_ptr<Lane[], Free> data;
-  Lane* get() const { return data.get(); }
-};
-
 /// Row of (parity, block, m) among the intermediate spectra: latitude parity is the outermost index.
 struct SpectrumRows {
   std::array<int, 4> first{};
   int count = 0;
-  std::vector<int> consecutive;  ///< 0, 12, 24, ...: rows of consecutive components
+  std::vector<std::vector<int>> coefficients;  ///< [row, parity of n - m]: where its degrees n stand among [nm][12]
   explicit SpectrumRows(const FoldedGrid&);
 };
 

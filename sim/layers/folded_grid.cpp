@@ -21,6 +21,8 @@ FoldedGrid::FoldedGrid(int degree, int grid_order)
     if (l == 0) quarter.index[1] = quarter.index[3] = -1;
     if (4 * l == nlon) quarter.index[2] = quarter.index[3] = -1;
     orbits.push_back(quarter);
+    for (int derivative = 0; derivative < 2; ++derivative)
+      append_fourier_row(longitude[derivative], p, l, nlon, derivative);
   }
   for (int m = 0; m <= p; ++m) blocks[m % 2].m.push_back(m);
   for (int m = 1; m <= p; ++m) blocks[2 + m % 2].m.push_back(m);
@@ -28,13 +30,12 @@ FoldedGrid::FoldedGrid(int degree, int grid_order)
     Block& block = blocks[b];
     const std::size_t rows = block.m.size(), columns = orbits.size();
     block.table.resize(rows * columns);
-    block.transposed.resize(rows * columns);
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t l = 0; l < columns; ++l) {
         const int m = block.m[r];
         const double angle = 2 * pi * double(m) * double(l) / nlon,
                      k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
-        block.table[r * columns + l] = block.transposed[l * rows + r] = k * (b < 2 ? std::cos(angle) : std::sin(angle));
+        block.table[r * columns + l] = k * (b < 2 ? std::cos(angle) : std::sin(angle));
       }
   }
   const LegendreTable table = legendre_table(p, theta);

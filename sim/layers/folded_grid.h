@@ -2,6 +2,7 @@
 // Separable synthesis and analysis on it need a quarter of the Fourier and half of the Legendre products.
 #pragma once
 
+#include "sim/sphere/fourier_sums.h"
 #include "sim/sphere/legendre.h"
 
 #include <array>
@@ -20,10 +21,10 @@ struct FoldedGrid {
   std::vector<Quarter> orbits;
   struct Block {  ///< one of cos/sin x even/odd m
     std::vector<int> m;
-    std::vector<double> table;       ///< m x orbits: basis function at the orbit's first longitude
-    std::vector<double> transposed;  ///< orbits x m
+    std::vector<double> table;  ///< m x orbits: basis function at the orbit's first longitude
   };
-  std::array<Block, 4> blocks;                    ///< cos even, cos odd, sin even, sin odd
+  std::array<Block, 4> blocks;       ///< cos even, cos odd, sin even, sin odd
+  std::vector<double> longitude[2];  ///< the basis functions there and their derivatives: rows of fourier_sums()
   std::vector<std::vector<double>> legendre[2];   ///< [parity of n-m][m]: (n) x half, values, without weights
   std::vector<std::vector<double>> synthesis[2];  ///< [parity][m]: (2 half) x (n): values, then derivatives
   Vector theta, weight;                           ///< of all latitudes; Gauss-Legendre

@@ -26,15 +26,7 @@ LayerPotentials::Plan::Plan(int order, int source_order)
     }
     singular_weight.push_back(source.weight[k] * std::numbers::pi / (s + 1) * sum * 2 * std::sin(t / 2) / std::sin(t));
   }
-  for (int i = 0; i < std::max(4 * coefficient_count(p), 8 * (s + 2)); ++i) {
-    identity3.push_back(3 * i);
-    identity9.push_back(9 * i);
-    identity12.push_back(components * i);
-  }
-  for (int m = 0; m <= p; ++m) {
-    down3.push_back(-3 * m);
-    down12.push_back(-components * m);
-  }
+  for (int tile = 0; tile * lanes < target.nlon; ++tile) turns.push_back(turn_of(tile));
   // W_i: the basis at points turned by Ry(theta_i), projected on a p-grid, where the product is integrated exactly.
   const Basis basis(p, p);
   const Matrix direction = grid_directions(basis);

@@ -17,18 +17,19 @@ struct LayerPotentials::Plan {
   struct Rotation {                     ///< the two mirror classes of one degree n, row-major, forward and transposed
     std::vector<double> cosine, sine, cosine_t, sine_t;
   };
-  std::vector<std::vector<Rotation>> rotations;       ///< [target latitude][n]
-  std::vector<int> identity3, identity9, identity12;  ///< 0, 3, 6, ...; 0, 9, 18, ...; 0, 12, 24, ...
-  std::vector<int> down3, down12;                     ///< 0, -3, -6, ... and 0, -12, -24, ...
+  std::vector<std::vector<Rotation>> rotations;  ///< [target latitude][n]
+  struct Turn {  ///< the z-rotation by phi of four targets, one a lane: cos(m phi), sin(m phi)
+    std::vector<Lane> cosine, sine;
+  };
+  std::vector<Turn> turns;  ///< of each tile of four longitudes
 
   Plan(int order, int source_order);
-  struct Turn;
   struct Scratch;
   Turn turn_of(int tile) const;
   LaneBuffer to_pole(int latitude, const Turn&, const Coefficients& x) const;
   LaneBuffer along_latitudes(const LaneBuffer& pole) const;
-  void quarter_of(const LaneBuffer& x_lat, int i, int lat, Scratch&) const;
-  void unfold_points(int lat, Scratch&) const;
+  void spectra_of(const LaneBuffer& x_lat, int i, Scratch&) const;
+  void points_of(int lat, Scratch&) const;
   void fold_kernels(int i, const Lane* target_x, bool with_double, Scratch&) const;
   LaneBuffer from_pole(int latitude, const Turn&, const LaneBuffer& pole, int used) const;
   void write_rows(const LaneBuffer& back, int tile, int used, double* rows) const;

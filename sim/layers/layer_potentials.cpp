@@ -104,18 +104,60 @@ LayerMatrices LayerPotentials::assemble(const Coefficients& position, bool with_
   return plan.project(rows, with_double);
 }
 
+namespace {
+
+/// Sums of one row of the six blocks with three fields.
+struct RowSums {
+  Lane x{}, y{}, z{};
+
+  void add(const double* block, int stride, Lane fx, Lane fy, Lane fz) {
+    const Lane xy = load_lane(block + stride), xz = load_lane(block + 2 * stride), yz = load_lane(block + 4 * stride);
+    x += load_lane(block) * fx;
+    y += xy * fx;
+    z += xz * fx;
+    x += xy * fy;
+    y += load_lane(block + 3 * stride) * fy;
+    z += yz * fy;
+    x += xz * fz;
+    y += yz * fz;
+    z += load_lane(block + 5 * stride) * fz;
+  }
+  void write(Matrix& out, int row) const {
+    const Lane sums = lane_sums(x, y, z, Lane{});
+    for (int d = 0; d < 3; ++d) out(row, d) = sums[d];
+  }
+};
+
+}  // namespace
+
 Coefficients LayerMatrix::apply(const Coefficients& density) const {
-  const int nc = coefficient_count(order);
-  Coefficients in = density.order == order ? density : resized(density, order), out{order, Matrix(nc, 3)};
-  const Vector fx = in.values.col(0), fy = in.values.col(1), fz = in.values.col(2);
-  using Row = Eigen::Map<const Eigen::RowVectorXd>;
-  for (int row = 0; row < nc; ++row) {
-    const double* block = values.data() + std::ptrdiff_t(row) * 6 * stride;
-    const Row xx(block, nc), xy(block + stride, nc), xz(block + 2 * stride, nc), yy(block + 3 * stride, nc),
-        yz(block + 4 * stride, nc), zz(block + 5 * stride, nc);
-    out.values(row, 0) = xx.dot(fx) + xy.dot(fy) + xz.dot(fz);
-    out.values(row, 1) = xy.dot(fx) + yy.dot(fy) + yz.dot(fz);
-    out.values(row, 2) = xz.dot(fx) + yz.dot(fy) + zz.dot(fz);
+  const int nc = coefficient_count(order), given = coefficient_count(std::min(order, density.order));
+  Coefficients out{order, Matrix(nc, 3)};
+  RawVector<double> fields(std::size_t(3) * stride);  // padded with zeros like the blocks
+  for (int d = 0; d < 3; ++d) {
+    double* to = fields.data() + std::ptrdiff_t(d) * stride;
+    std::copy_n(density.values.col(d).data(), given, to);
+    std::fill(to + given, to + stride, 0.0);
+  }
+  const double *fx = fields.data(), *fy = fx + stride, *fz = fy + stride;
+  const std::ptrdiff_t length = std::ptrdiff_t(6) * stride;
+  int row = 0;
+  for (; row + 2 <= nc; row += 2) {  // two at once, whose sums do not wait for each other
+    const double* block = values.data() + row * length;
+    RowSums a, b;
+    for (int k = 0; k < stride; k += lanes) {
+      const Lane x = load_lane(fx + k), y = load_lane(fy + k), z = load_lane(fz + k);
+      a.add(block + k, stride, x, y, z);
+      b.add(block + length + k, stride, x, y, z);
+    }
+    a.write(out.values, row);
+    b.write(out.values, row + 1);
+  }
+  if (row < nc) {
+    RowSums a;
+    for (int k = 0; k < stride; k += lanes)
+      a.add(values.data() + row * length + k, stride, load_lane(fx + k), load_lane(fy + k), load_lane(fz + k));
+    a.write(out.values, row);
   }
   return out;
 }

@@ -41,11 +41,6 @@ void transpose(Lane* block) {
 
 }  // namespace
 
-/// The z-rotation by phi of four targets, one a lane: cos(m phi), sin(m phi).
-struct LayerPotentials::Plan::Turn {
-  std::vector<Lane> cosine, sine;
-};
-
 LayerPotentials::Plan::Turn LayerPotentials::Plan::turn_of(int tile) const {
   Turn turn{std::vector<Lane>(p + 1), std::vector<Lane>(p + 1)};
   for (int m = 0; m <= p; ++m)
@@ -76,11 +71,10 @@ LaneBuffer LayerPotentials::Plan::to_pole(int latitude, const Turn& turn, const 
   for (int n = 0; n <= p; ++n) {
     const Rotation& w = rotations[latitude][n];
     const int centre = 3 * coefficient_index(n, 0);
-    multiply({n + 1, n + 1, w.cosine.data(), n + 1, identity3.data(), identity3.data()}, 3, turned.get() + centre,
-             pole.get() + centre);
-    if (n > 0)
-      multiply({n, n, w.sine.data(), n, down3.data(), down3.data()}, 3, turned.get() + centre - 3,
-               pole.get() + centre - 3);
+    multiply({n + 1, n + 1, w.cosine.data()}, 3, turned.get() + centre, EqualRows{3}, pole.get() + centre,
+             EqualRows{3});
+    multiply({n, n, w.sine.data()}, 3, turned.get() + centre - 3, EqualRows{-3}, pole.get() + centre - 3,
+             EqualRows{-3});
   }
   return pole;
 }
@@ -100,74 +94,62 @@ LaneBuffer LayerPotentials::Plan::along_latitudes(const LaneBuffer& pole) const 
           continue;
         }
         for (int c = 0; c < count; ++c) in[c] = 3 * coefficient_index(m + parity + 2 * c, sign * m);
-        multiply({2 * half, count, source.synthesis[parity][m].data(), count, in.data(), identity3.data()}, 3,
-                 pole.get(), out);
+        multiply({2 * half, count, source.synthesis[parity][m].data()}, 3, pole.get(), ListedRows(in.data()), out,
+                 EqualRows{3});
       }
   return x_lat;
 }
 
 /// Memory for one pair of source latitudes after the other.
 struct LayerPotentials::Plan::Scratch {
-  LaneBuffer modes, quarter, folded;
+  LaneBuffer spectra;               ///< [latitude of the pair][cosines of m = 0.., then sines of m = 1..][x, x_theta]
+  LaneBuffer folded;                ///< of the kernels
   std::vector<SourcePoint> points;  ///< [latitude of the pair][orbit][member]
   std::vector<Lane> samples;
 };
 
-/// Fourier synthesis at source latitude i (lat = 0) or its mirror (1): x, x_theta and x_phi of four blocks at a quarter
-/// of the longitudes.
-void LayerPotentials::Plan::quarter_of(const LaneBuffer& x_lat, int i, int lat, Scratch& scratch) const {
-  const int half = source.half, spectra = source_rows.count, orbits = int(source.orbits.size());
-  const double lat_sign = lat == 0 ? 1 : -1;
-  // Value and slope of (block, m) at this latitude from the two parities of n - m: P is even for parity 0, P' odd.
-  const auto at = [&](int block, int k, int slope, int d) {
-    const Lane* even = x_lat.get() + std::ptrdiff_t(source_rows.first[block] + k) * 2 * half * 3;
-    const Lane* odd = x_lat.get() + std::ptrdiff_t(spectra + source_rows.first[block] + k) * 2 * half * 3;
-    const int at_row = (slope * half + i) * 3 + d;
-    return slope == 0 ? even[at_row] + lat_sign * odd[at_row] : lat_sign * even[at_row] + odd[at_row];
-  };
-  Lane* modes = scratch.modes.get();
-  for (int b = 0; b < 4; ++b) {
-    const int count = int(source.blocks[b].m.size()), partner = b < 2 ? b + 2 : b - 2;
-    // d/dphi turns sin(m phi) coefficients s into cosines m s, and cosines c into sines -m c; m keeps its parity.
-    for (int k = 0; k < count; ++k) {
-      const int m = source.blocks[b].m[k];
-      // Among the even m the cosines start at 0, the sines at 2.
-      const int k_partner = m == 0 ? -1 : b == 0 ? k - 1 : b == 2 ? k + 1 : k;
+/// Longitude spectra of x and x_theta at source latitude i and its mirror, where P is even in z for an even n - m and
+/// P' odd.
+void LayerPotentials::Plan::spectra_of(const LaneBuffer& x_lat, int i, Scratch& scratch) const {
+  const std::ptrdiff_t half = source.half, row = 2 * half * 3, odd = source_rows.count * row;
+  Lane* here = scratch.spectra.get();
+  Lane* there = here + std::ptrdiff_t(2 * p + 1) * 6;
+  for (int b = 0; b < 4; ++b)
+    for (std::size_t k = 0; k < source.blocks[b].m.size(); ++k) {
+      const Lane* value = x_lat.get() + (source_rows.first[b] + std::ptrdiff_t(k)) * row + i * 3;
+      const Lane* slope = value + half * 3;
+      const std::ptrdiff_t at = 6 * (source.blocks[b].m[k] + (b < 2 ? 0 : p));
       for (int d = 0; d < 3; ++d) {
-        modes[9 * k + d] = at(b, k, 0, d);
-        modes[9 * k + 3 + d] = at(b, k, 1, d);
-        modes[9 * k + 6 + d] = m == 0 ? Lane{} : (b < 2 ? double(m) : -double(m)) * at(partner, k_partner, 0, d);
+        here[at + d] = value[d] + value[odd + d];
+        there[at + d] = value[d] - value[odd + d];
+        here[at + 3 + d] = slope[d] + slope[odd + d];
+        there[at + 3 + d] = slope[odd + d] - slope[d];
       }
     }
-    Lane* out = scratch.quarter.get() + std::ptrdiff_t(b) * orbits * 9;
-    if (count == 0) {
-      std::fill(out, out + orbits * 9, Lane{});
-      continue;
-    }
-    multiply({orbits, count, source.blocks[b].transposed.data(), count, identity9.data(), identity9.data()}, 9, modes,
-             out);
-  }
 }
 
-/// From the quarter to all longitudes of that latitude: points and normals.
-void LayerPotentials::Plan::unfold_points(int lat, Scratch& scratch) const {
-  const int orbits = int(source.orbits.size());
-  for (int l = 0; l < orbits; ++l)
+/// Points and normals at all longitudes of one latitude of the pair.
+void LayerPotentials::Plan::points_of(int lat, Scratch& scratch) const {
+  const int orbits = int(source.orbits.size()), width = 2 * p + 1;
+  const Lane* cosines = scratch.spectra.get() + std::ptrdiff_t(lat) * width * 6;
+  const Lane* sines = cosines + std::ptrdiff_t(p) * 6;
+  for (int l = 0; l < orbits; ++l) {
+    const double* row = source.longitude[0].data() + std::ptrdiff_t(l) * width;
+    const double* slopes = source.longitude[1].data() + std::ptrdiff_t(l) * width;
+    const Mirrored<3> x = fourier_sums<3>(row, p, p, true, cosines, sines, 6);
+    const Mirrored<3> t = fourier_sums<3>(row, p, p, true, cosines + 3, sines + 3, 6);
+    const Mirrored<3> f = fourier_sums<3>(slopes, p, p, false, sines, cosines, 6);
     for (int member = 0; member < 4; ++member) {
       if (source.orbits[l].index[member] < 0) continue;
-      Lane v[9];
-      for (int c = 0; c < 9; ++c) {
-        v[c] = Lane{};
-        for (int b = 0; b < 4; ++b) v[c] += fold_sign[b][member] * scratch.quarter.get()[(b * orbits + l) * 9 + c];
-      }
+      const Pack<3>&x_t = t.member[member], &x_f = f.member[member];
       SourcePoint& y = scratch.points[(std::size_t(lat) * orbits + l) * 4 + member];
-      for (int d = 0; d < 3; ++d) {
-        y.x[d] = v[d];
-        const int e = (d + 1) % 3, f = (d + 2) % 3;
-        y.n[d] = v[3 + e] * v[6 + f] - v[3 + f] * v[6 + e];
-      }
+      x.member[member].store(y.x);
+      y.n[0] = x_t.b * x_f.c - x_t.c * x_f.b;
+      y.n[1] = x_t.c * x_f.a - x_t.a * x_f.c;
+      y.n[2] = x_t.a * x_f.b - x_t.b * x_f.a;
       y.area = lane_sqrt(y.n[0] * y.n[0] + y.n[1] * y.n[1] + y.n[2] * y.n[2]);
     }
+  }
 }
 
 /// Kernels of a pair of latitudes, folded.
@@ -194,11 +176,10 @@ LaneBuffer LayerPotentials::Plan::from_pole(int latitude, const Turn& turn, cons
   for (int n = 0; n <= p; ++n) {
     const Rotation& w = rotations[latitude][n];
     const int centre = components * coefficient_index(n, 0);
-    multiply({n + 1, n + 1, w.cosine_t.data(), n + 1, identity12.data(), identity12.data()}, used, pole.get() + centre,
-             back.get() + centre);
-    if (n > 0)
-      multiply({n, n, w.sine_t.data(), n, down12.data(), down12.data()}, used, pole.get() + centre - components,
-               back.get() + centre - components);
+    multiply({n + 1, n + 1, w.cosine_t.data()}, used, pole.get() + centre, EqualRows{components}, back.get() + centre,
+             EqualRows{components});
+    multiply({n, n, w.sine_t.data()}, used, pole.get() + centre - components, EqualRows{-components},
+             back.get() + centre - components, EqualRows{-components});
   }
   for (int n = 0; n <= p; ++n)
     for (int m = 1; m <= n; ++m) {
@@ -216,13 +197,23 @@ LaneBuffer LayerPotentials::Plan::from_pole(int latitude, const Turn& turn, cons
 /// From a target a lane to a coefficient a lane, so that rows are written along their length.
 void LayerPotentials::Plan::write_rows(const LaneBuffer& back, int tile, int used, double* rows) const {
   const int nc = coefficient_count(p), stride = column_stride(), targets = std::min(lanes, target.nlon - tile * lanes);
-  for (int nm = 0; nm < stride; nm += lanes)
+  const std::ptrdiff_t row = std::ptrdiff_t(used) * stride;
+  const auto write = [&](int nm, int k, Lane a, Lane b, Lane c, Lane d) {
+    Lane block[lanes] = {a, b, c, d};
+    transpose(block);
+    double* to = rows + std::ptrdiff_t(k) * stride + nm;
+    for (int lane = 0; lane < targets; ++lane) store_lane(to + lane * row, block[lane]);
+  };
+  int nm = 0;
+  for (; nm + lanes <= nc; nm += lanes) {
+    const Lane* from = back.get() + components * nm;
+    for (int k = 0; k < used; ++k)
+      write(nm, k, from[k], from[components + k], from[2 * components + k], from[3 * components + k]);
+  }
+  for (; nm < stride; nm += lanes)
     for (int k = 0; k < used; ++k) {
-      Lane block[lanes];
-      for (int e = 0; e < lanes; ++e) block[e] = nm + e < nc ? back.get()[components * (nm + e) + k] : Lane{};
-      transpose(block);
-      for (int lane = 0; lane < targets; ++lane)
-        __builtin_memcpy(rows + (std::ptrdiff_t(lane) * used + k) * stride + nm, &block[lane], sizeof(Lane));
+      const auto at = [&](int e) { return nm + e < nc ? back.get()[components * (nm + e) + k] : Lane{}; };
+      write(nm, k, at(0), at(1), at(2), at(3));
     }
 }
 
@@ -231,7 +222,7 @@ void LayerPotentials::Plan::write_rows(const LaneBuffer& back, int tile, int use
 void LayerPotentials::Plan::rows_of_tile(int latitude, int tile, const Coefficients& x, bool with_double,
                                          double* rows) const {
   const int half = source.half, used = with_double ? components : components / 2, orbits = int(source.orbits.size());
-  const Turn turn = turn_of(tile);
+  const Turn& turn = turns[tile];
   const LaneBuffer pole = to_pole(latitude, turn, x), x_lat = along_latitudes(pole);
   Lane target_x[3] = {};
   for (int n = 0; n <= p; ++n)
@@ -239,15 +230,12 @@ void LayerPotentials::Plan::rows_of_tile(int latitude, int tile, const Coefficie
       target_x[d] += std::sqrt((2 * n + 1) / (4 * pi)) * pole.get()[3 * coefficient_index(n, 0) + d];
 
   LaneBuffer spectrum(std::size_t(2) * source_rows.count * half * components);
-  Scratch scratch{LaneBuffer(std::size_t(p / 2 + 1) * 9), LaneBuffer(std::size_t(4) * orbits * 9),
-                  LaneBuffer(std::size_t(8) * orbits * components),
+  Scratch scratch{LaneBuffer(std::size_t(2) * (2 * p + 1) * 6), LaneBuffer(std::size_t(8) * orbits * components),
                   std::vector<SourcePoint>(std::size_t(2) * orbits * 4), std::vector<Lane>(8 * components)};
   for (int i = 0; i < half; ++i) {
     const int members = source.mirror(i) == i ? 1 : 2;
-    for (int lat = 0; lat < members; ++lat) {
-      quarter_of(x_lat, i, lat, scratch);
-      unfold_points(lat, scratch);
-    }
+    spectra_of(x_lat, i, scratch);
+    for (int lat = 0; lat < members; ++lat) points_of(lat, scratch);
     fold_kernels(i, target_x, with_double, scratch);
     fourier_analysis(source, source_rows, scratch.folded.get(), spectrum.get(), i, used);
   }

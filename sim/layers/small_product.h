@@ -3,62 +3,60 @@
 // needs a shuffle.
 #pragma once
 
-#include "sim/core/lanes.h"
+#include "sim/core/packs.h"
 
 #include <cstddef>
 
 namespace sim {
 
-/// Rows of B and C start at b + b_row[k] and c + c_row[m] (in vectors); A is rows x depth, row-major, leading dimension
-/// a_ld.
-struct SmallProduct {
+/// Where rows start, in vectors: at equal distances, or as listed.
+struct EqualRows {
+  std::ptrdiff_t distance;
+  std::ptrdiff_t operator[](int row) const { return row * distance; }
+};
+using ListedRows = const int*;
+
+/// A is rows x depth, row-major.
+struct SmallMatrix {
   int rows, depth;
-  const double* a;
-  int a_ld;
-  const int* b_row;
-  const int* c_row;
+  const double* values;
 };
 
-template <int R>
-inline void product_rows(const SmallProduct& s, int row, const Lane* b, Lane* c) {
-  Lane acc[R][3] = {};
-  const double* a = s.a + std::ptrdiff_t(row) * s.a_ld;
-  for (int k = 0; k < s.depth; ++k) {
-    const Lane* bk = b + s.b_row[k];
-    const Lane b0 = bk[0], b1 = bk[1], b2 = bk[2];
-    for (int r = 0; r < R; ++r) {
-      const double x = a[std::ptrdiff_t(r) * s.a_ld + k];
-      acc[r][0] += x * b0;
-      acc[r][1] += x * b1;
-      acc[r][2] += x * b2;
-    }
+template <int R, class RowsB, class RowsC>
+inline void product_rows(const SmallMatrix& m, int row, const Lane* b, RowsB b_row, Lane* c, RowsC c_row) {
+  Pack<3> s, t, u, v;
+  const double* a0 = m.values + std::ptrdiff_t(row) * m.depth;
+  const double* a2 = a0 + 2 * std::ptrdiff_t(m.depth);
+  for (int k = 0; k < m.depth; ++k) {
+    const Pack<3> x = Pack<3>::load(b + b_row[k]);
+    s.add(a0[k], x);
+    if constexpr (R > 1) t.add(a0[m.depth + k], x);
+    if constexpr (R > 2) u.add(a2[k], x);
+    if constexpr (R > 3) v.add(a2[m.depth + k], x);
   }
-  for (int r = 0; r < R; ++r) {
-    Lane* out = c + s.c_row[row + r];
-    out[0] = acc[r][0];
-    out[1] = acc[r][1];
-    out[2] = acc[r][2];
-  }
+  s.store(c + c_row[row]);
+  if constexpr (R > 1) t.store(c + c_row[row + 1]);
+  if constexpr (R > 2) u.store(c + c_row[row + 2]);
+  if constexpr (R > 3) v.store(c + c_row[row + 3]);
 }
 
 /// C = A B, each row of B and C being `width` vectors, a multiple of 3.
-inline void multiply(const SmallProduct& s, int width, const Lane* b, Lane* c) {
-  for (int w = 0; w < width; w += 3) {
-    int row = 0;
-    for (; row + 4 <= s.rows; row += 4) product_rows<4>(s, row, b + w, c + w);
-    switch (s.rows - row) {
-      case 3:
-        product_rows<3>(s, row, b + w, c + w);
-        break;
-      case 2:
-        product_rows<2>(s, row, b + w, c + w);
-        break;
-      case 1:
-        product_rows<1>(s, row, b + w, c + w);
-        break;
-      default:
-        break;
-    }
+template <class RowsB, class RowsC>
+inline void multiply(const SmallMatrix& m, int width, const Lane* b, RowsB b_row, Lane* c, RowsC c_row) {
+  int row = 0;
+  const auto all = [&]<int R>() {
+    for (int w = 0; w < width; w += 3) product_rows<R>(m, row, b + w, b_row, c + w, c_row);
+    row += R;
+  };
+  while (const int left = m.rows - row) {  // panels as even as possible: 5 rows are 3 and 2
+    if (left >= 10 || left % 4 == 0 || left == 7)
+      all.template operator()<4>();
+    else if (left >= 3)
+      all.template operator()<3>();
+    else if (left == 2)
+      all.template operator()<2>();
+    else
+      all.template operator()<1>();
   }
 }
 

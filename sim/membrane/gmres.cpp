@@ -28,41 +28,43 @@ GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b,
     return result;
   }
   std::vector<Vector> basis{r / beta}, directions;
-  Matrix h = Matrix::Zero(most_iterations + 1, most_iterations);
-  Vector g = Vector::Zero(most_iterations + 1), cosine(most_iterations), sine(most_iterations);
-  g[0] = beta;
+  std::vector<std::vector<double>> columns;  // of the upper triangle
+  std::vector<double> g{beta}, cosine, sine;
   int k = 0;
   while (k < most_iterations && result.residual > tolerance) {
     directions.push_back(inverse(basis[k]));
     Vector w = A(directions[k]);
     // Modified Gram-Schmidt, one row at a time; then the Givens rotations of the earlier columns.
+    std::vector<double> h(std::size_t(k) + 1);
     for (int i = 0; i <= k; ++i) {
-      h(i, k) = product(w, basis[i]);
-      w -= h(i, k) * basis[i];
+      h[i] = product(w, basis[i]);
+      w -= h[i] * basis[i];
     }
     const double length = norm(w);
-    h(k + 1, k) = length;
     for (int i = 0; i < k; ++i) {
-      const double above = h(i, k), below = h(i + 1, k);
-      h(i, k) = cosine[i] * above + sine[i] * below;
-      h(i + 1, k) = cosine[i] * below - sine[i] * above;
+      const double above = h[i], below = h[i + 1];
+      h[i] = cosine[i] * above + sine[i] * below;
+      h[i + 1] = cosine[i] * below - sine[i] * above;
     }
-    const double radius = std::hypot(h(k, k), h(k + 1, k));
+    const double radius = std::hypot(h[k], length);
     if (!std::isfinite(radius) || radius == 0) break;
-    cosine[k] = h(k, k) / radius;
-    sine[k] = h(k + 1, k) / radius;
-    h(k, k) = radius;
-    h(k + 1, k) = 0;
-    g[k + 1] = -sine[k] * g[k];
+    cosine.push_back(h[k] / radius);
+    sine.push_back(length / radius);
+    h[k] = radius;
+    g.push_back(-sine[k] * g[k]);
     g[k] *= cosine[k];
+    columns.push_back(std::move(h));
     ++k;
     result.residual = std::abs(g[k]) / scale;
     if (length <= 1e-300) break;
     basis.push_back(w / length);
   }
   result.iterations = k;
-  const Vector y = h.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(g.head(k));
-  for (int i = 0; i < k; ++i) result.solution += y[i] * directions[i];
+  for (int i = k - 1; i >= 0; --i) {  // back substitution, column by column
+    const double y = g[i] / columns[i][i];
+    for (int j = 0; j < i; ++j) g[j] -= y * columns[i][j];
+    result.solution += y * directions[i];
+  }
   result.converged = result.residual <= tolerance;
   return result;
 }

@@ -1,5 +1,7 @@
 #include "sim/membrane/preconditioner.h"
 
+#include "sim/surface/rows.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -58,12 +60,12 @@ Coefficients precondition_velocity(const Membrane& m, const SpectralInverse& inv
   if (inverse.normal.empty()) return out;
   const Basis& basis = m.waves.basis;
   const Matrix values = basis.synthesize(resized(u, p + 1)).values;
-  Coefficients along = basis.analyze(Matrix(values.cwiseProduct(m.waves.n).rowwise().sum()));
+  Coefficients along = basis.analyze(row_products(values, m.waves.n));
   filter(along.values, inverse.normal, int(inverse.normal.size()) - 1);
   auto last = along.values.bottomRows(inverse.edge.rows());
   last = (inverse.edge * last).eval();
   const Vector less = basis.synthesize(along).values.col(0);
-  out.values += basis.analyze(Matrix((m.waves.n.array().colwise() * less.array()).matrix())).values.topRows(nc);
+  out.values += basis.analyze(scaled_rows(less, m.waves.n)).values.topRows(nc);
   return out;
 }
 

@@ -1,5 +1,7 @@
 #include "sim/membrane/rigid.h"
 
+#include "sim/surface/rows.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -45,19 +47,27 @@ Coefficients without_rigid_part(const RigidBody& b, const Coefficients& u) {
 
 RigidMotion shape_motion(const RigidBody& b, const Geometry& g, const Matrix& u) {
   constexpr double eta = 0.03;
-  // Rotations are taken in units of the size, so that the six unknowns are all velocities.
+  // Rotations are taken in units of the size, so that the six unknowns are all velocities. A motion (t, w) moves the
+  // point at the arm a by t + w x a, and along the normal by n.t + (a x n).w.
   const double size = 1 / std::sqrt(b.inverse_inertia.trace());
-  Eigen::Matrix<double, 6, 6> left = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-  for (Eigen::Index k = 0; k < g.dA.size(); ++k) {
-    const Vec3 n = g.n.row(k).transpose(), v = u.row(k).transpose(),
-               arm = (g.x.value.row(k).transpose() - b.centre) / size;
-    Eigen::Matrix<double, 3, 6> motions;
-    motions << Eigen::Matrix3d::Identity(), -cross_matrix(arm);
-    const Eigen::Matrix<double, 1, 6> along = n.transpose() * motions;
-    left += g.dA[k] * ((1 - eta) * along.transpose() * along + eta * motions.transpose() * motions);
-    right += g.dA[k] * ((1 - eta) * v.dot(n) * along.transpose() + eta * motions.transpose() * v);
+  const Matrix arm = (g.x.value.rowwise() - b.centre.transpose()) / size;
+  Matrix along(g.dA.size(), 6);
+  along.leftCols(3) = g.n;
+  for (int d = 0; d < 3; ++d) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    along.col(3 + d).array() = arm.col(e).array() * g.n.col(f).array() - arm.col(f).array() * g.n.col(e).array();
   }
+  const Matrix weighted = scaled_rows(g.dA, along), weighted_arm = scaled_rows(g.dA, arm);
+  const Eigen::Matrix3d second = weighted_arm.transpose() * arm, moment = weighted_arm.transpose() * u;
+  const Vec3 first = weighted_arm.colwise().sum().transpose();
+  Eigen::Matrix<double, 6, 6> all;
+  all << g.dA.sum() * Eigen::Matrix3d::Identity(), -cross_matrix(first), cross_matrix(first),
+      second.trace() * Eigen::Matrix3d::Identity() - second;
+  Eigen::Matrix<double, 6, 1> carried;
+  carried << u.transpose() * g.dA, moment(1, 2) - moment(2, 1), moment(2, 0) - moment(0, 2),
+      moment(0, 1) - moment(1, 0);
+  const Eigen::Matrix<double, 6, 6> left = (1 - eta) * (weighted.transpose() * along) + eta * all;
+  const Eigen::Matrix<double, 6, 1> right = (1 - eta) * (weighted.transpose() * row_products(u, g.n)) + eta * carried;
   const Eigen::Matrix<double, 6, 1> r = left.ldlt().solve(right);
   return {r.head<3>(), r.tail<3>() / size, b.centre};
 }

@@ -37,7 +37,7 @@ double step_of(const Sheet& m, double c) { return c == 0 && m.pinned ? m.pinned-
 
 Coefficients divergence(const Sheet& m, const Coefficients& velocity) {
   const FirstDerivatives u = m.bases.field.slopes(velocity);
-  Coefficients d = m.bases.field.analyze(Matrix(surface_divergence(m.geometry, u.t, u.f)));
+  Coefficients d = m.bases.field.analyze(surface_divergence(m.geometry, u.t, u.f));
   d.values.bottomRows(2 * m.order() + 1).setZero();
   return d;
 }
@@ -61,13 +61,16 @@ Vector displacement_magnitude(const Sheet& m, const Vector& bent) {
 }  // namespace
 
 Coefficients implicit_force(const Sheet& m, double c, const Motion& y) {
-  Matrix force = tension_force(m.bases, m.geometry, y.tension);
+  const Geometry& g = m.geometry;
+  const FirstDerivatives sigma = m.bases.field.first(y.tension);
+  Vector along = 2 * g.H.cwiseProduct(sigma.value.col(0));  // (33c)
   c = step_of(m, c);
   if (c != 0) {
-    const Matrix displacement = c * m.bases.field.synthesize(y.velocity).values;
-    const Vector bent = curvature_change(m.ripples, m.geometry, m.curvature_gradient, displacement);
-    force += along_normal(m.geometry, displacement_magnitude(m, bent));
+    const Matrix velocity = m.bases.field.synthesize(y.velocity).values;
+    along += displacement_magnitude(m, c * curvature_change(m.ripples, g, m.curvature_gradient, velocity));
   }
+  Matrix force = surface_gradient(g, sigma);
+  for (int d = 0; d < 3; ++d) force.col(d).array() += along.array() * g.n.col(d).array();
   return m.bases.field.analyze(force);
 }
 

@@ -1,5 +1,7 @@
 #include "sim/membrane/sliding.h"
 
+#include "sim/surface/rows.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -34,8 +36,7 @@ Coefficients sliding_velocity(const SlidingProblem& s, const Coefficients& guess
   const Vector diagonal = a.array() * (1 + rate * s.c) + smallness;
   const auto apply = [&](const Matrix& w) -> Matrix {
     const Matrix on_grid = s.basis.synthesize({p, w}).values;
-    const Vector along = on_grid.cwiseProduct(n).rowwise().sum();
-    const Matrix normal_part = n.array().colwise() * along.array();
+    const Matrix normal_part = scaled_rows(row_products(on_grid, n), n);
     return (diagonal.asDiagonal() * w) + tangentiality * s.basis.analyze(normal_part).values;
   };
   const Matrix right = -(a.asDiagonal() * (within + rate * s.position.values));

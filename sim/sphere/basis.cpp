@@ -1,11 +1,13 @@
 #include "sim/sphere/basis.h"
 
 #include "sim/core/fftw_planner.h"
+#include "sim/sphere/grid_transform.h"
 
 #include <fftw3.h>
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 namespace sim {
@@ -22,14 +24,10 @@ double longitude_norm(int m) { return m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::
 
 }  // namespace
 
-// Longitude spectra are held as nlat x (2p+1) blocks, one a field: columns 0..p are the cosines, p+m the sine of m phi.
 struct Basis::Plan {
   int p = 0, q = 0, nlat = 0, nlon = 0;
   Vector theta, phi, weights, sin_theta;
-  std::vector<Matrix> synthesis;                    ///< per m: 3 nlat x (p-m+1), rows P, P', P'' stacked
-  std::vector<Matrix> analysis;                     ///< per m: (p-m+1) x nlat, Gauss weights included
-  Matrix fourier[3];                                ///< (2p+1) x nlon: basis functions in phi and their two derivatives
-  Matrix fourier_analysis;                          ///< nlon x (2p+1)
+  std::optional<GridTransform> transform;
   fftw_plan backward = nullptr, forward = nullptr;  ///< one field: nlat transforms of length nlon
 
   Plan(int order, int grid_order);
@@ -37,9 +35,15 @@ struct Basis::Plan {
   Plan(const Plan&) = delete;
   bool dense() const { return p <= dense_fourier_limit; }
 
-  Matrix latitude(const Coefficients& c, int tables) const;
-  void longitude(const Matrix& spectrum, int table, int derivative, Matrix& out) const;
-  Coefficients analyze(const Matrix& samples) const;
+  void synthesize(const Coefficients& c, const Wanted& wanted) const;
+  void fast_synthesis(const Lane* spectrum, int fields, TableRange made, const Wanted& wanted) const;
+  void fast_analysis(const double* samples, int fields, Lane* spectrum) const;
+  Coefficients analyze(const double* samples, int fields) const;
+  /// To be filled: points x fields.
+  double* sized(Matrix& m, const Coefficients& c) const {
+    m.resize(nlat * nlon, c.values.cols());
+    return m.data();
+  }
 };
 
 Basis::Plan::Plan(int order, int grid_order) : p(order), q(grid_order), nlat(grid_order + 1), nlon(2 * grid_order + 2) {
@@ -54,33 +58,8 @@ Basis::Plan::Plan(int order, int grid_order) : p(order), q(grid_order), nlat(gri
       weights[i + nlat * j] = rule.weight[i] * 2 * pi / nlon;
       sin_theta[i + nlat * j] = std::sin(theta[i]);
     }
-  const LegendreTable table = legendre_table(p, theta);
-  for (int m = 0; m <= p; ++m) {
-    const int first = legendre_index(p, m, m), count = p - m + 1;
-    Matrix s(3 * nlat, count);
-    s.topRows(nlat) = table.value.middleCols(first, count);
-    s.middleRows(nlat, nlat) = table.d1.middleCols(first, count);
-    s.bottomRows(nlat) = table.d2.middleCols(first, count);
-    analysis.push_back(table.value.middleCols(first, count).transpose() * rule.weight.asDiagonal());
-    synthesis.push_back(std::move(s));
-  }
-  if (dense()) {
-    for (auto& f : fourier) f.setZero(2 * p + 1, nlon);
-    for (int j = 0; j < nlon; ++j)
-      for (int m = 0; m <= p; ++m) {
-        // The angle is reduced by whole turns first, so that mirrored columns agree to the last bit.
-        const double angle = 2 * pi * ((std::int64_t(m) * j) % nlon) / nlon, k = longitude_norm(m);
-        const double c = k * std::cos(angle), s = k * std::sin(angle);
-        fourier[0](m, j) = c;
-        fourier[1](m, j) = -m * s;
-        fourier[2](m, j) = -double(m) * m * c;
-        if (m == 0) continue;
-        fourier[0](p + m, j) = s;
-        fourier[1](p + m, j) = m * c;
-        fourier[2](p + m, j) = -double(m) * m * s;
-      }
-    fourier_analysis = fourier[0].transpose() * (2 * pi / nlon);
-  } else {
+  transform.emplace(p, rule, nlon, dense());
+  if (!dense()) {
     Matrix in(nlat, nlon), out(nlat, nlon);
     const fftw_iodim dimension{nlon, nlat, nlat}, many{nlat, 1, 1};
     const fftw_r2r_kind to_points = FFTW_HC2R, to_spectrum = FFTW_R2HC;
@@ -97,89 +76,73 @@ Basis::Plan::~Plan() {
   if (forward) fftw_destroy_plan(forward);
 }
 
-/// Legendre half: (tables nlat) x (fields (2p+1)); `tables` counts how many of P, P', P'' are wanted.
-Matrix Basis::Plan::latitude(const Coefficients& c, int tables) const {
+void Basis::Plan::synthesize(const Coefficients& c, const Wanted& wanted) const {
   if (c.order > p) throw std::invalid_argument("Basis: coefficients of a higher degree than the plan's");
-  const int fields = int(c.values.cols()), width = 2 * p + 1, degree = c.order;
-  Matrix spectrum = Matrix::Zero(tables * nlat, fields * width);
-  Matrix block, product;
-  for (int m = 0; m <= degree; ++m) {
-    const int count = degree - m + 1, parts = m == 0 ? 1 : 2;
-    block.resize(count, parts * fields);
-    for (int f = 0; f < fields; ++f)
-      for (int n = m; n <= degree; ++n) {
-        block(n - m, f) = c.values(coefficient_index(n, m), f);
-        if (m > 0) block(n - m, fields + f) = c.values(coefficient_index(n, -m), f);
+  const int fields = int(c.values.cols());
+  TableRange made{3, 0};
+  for (const TableRange& range : wanted.tables)
+    if (range.count() > 0) made = {std::min(made.first, range.first), std::max(made.last, range.last)};
+  const LaneBuffer spectrum(std::size_t(transform->spectrum_size(made.count() * fields)));
+  transform->along_latitudes(c.values.data(), c.order, fields, made, spectrum.get());
+  if (dense()) {
+    transform->around(spectrum.get(), c.order, fields, made, wanted);
+    return;
+  }
+  const std::size_t row = std::size_t(made.count()) * fields * transform->latitude_lanes();
+  for (int m = c.order + 1; m <= p; ++m)
+    for (const int at : {m, p + m}) std::fill_n(spectrum.get() + at * row, row, Lane{});
+  fast_synthesis(spectrum.get(), fields, made, wanted);
+}
+
+/// The Fourier half by FFTW.
+void Basis::Plan::fast_synthesis(const Lane* spectrum, int fields, TableRange made, const Wanted& wanted) const {
+  const int depth = transform->latitude_lanes(), columns = made.count() * fields;
+  Matrix scratch(nlat, nlon);  // half-complex order: real parts 0.., imaginary part of m at nlon - m
+  for (int d = 0; d < 3; ++d)
+    for (int t = wanted.tables[d].first; t < wanted.tables[d].last; ++t)
+      for (int f = 0; f < fields; ++f) {
+        const auto row = [&](int at) {
+          const Lane* from = spectrum + (std::ptrdiff_t(at) * columns + (t - made.first) * fields + f) * depth;
+          return Eigen::Map<const Vector>(reinterpret_cast<const double*>(from), nlat);
+        };
+        scratch.setZero();
+        if (d == 0) scratch.col(0) = row(0) * longitude_norm(0);
+        for (int m = 1; m <= p; ++m) {
+          const double k = 0.5 * longitude_norm(m) * std::pow(m, d);
+          const auto c = row(m), s = row(p + m);
+          if (d == 0) scratch.col(m) = k * c, scratch.col(nlon - m) = -k * s;
+          if (d == 1) scratch.col(m) = k * s, scratch.col(nlon - m) = k * c;
+          if (d == 2) scratch.col(m) = -k * c, scratch.col(nlon - m) = k * s;
+        }
+        fftw_execute_r2r(backward, scratch.data(), wanted.out[d][t] + std::ptrdiff_t(f) * nlat * nlon);
       }
-    product.noalias() = synthesis[m].topLeftCorner(tables * nlat, count) * block;
-    for (int f = 0; f < fields; ++f) {
-      spectrum.col(f * width + m) = product.col(f);
-      if (m > 0) spectrum.col(f * width + p + m) = product.col(fields + f);
-    }
-  }
-  return spectrum;
 }
 
-/// Fourier half: samples of the given derivative in phi of table P (0), P' (1) or P'' (2), points x fields.
-void Basis::Plan::longitude(const Matrix& spectrum, int table, int derivative, Matrix& out) const {
-  const int width = 2 * p + 1, fields = int(spectrum.cols()) / width;
-  out.resize(nlat * nlon, fields);
-  Matrix scratch;
+void Basis::Plan::fast_analysis(const double* samples, int fields, Lane* spectrum) const {
+  const int depth = transform->latitude_lanes();
+  Matrix in(nlat, nlon), out(nlat, nlon);
+  std::fill_n(spectrum, transform->spectrum_size(fields), Lane{});
   for (int f = 0; f < fields; ++f) {
-    const auto block = spectrum.block(table * nlat, f * width, nlat, width);
-    Eigen::Map<Matrix> points(out.col(f).data(), nlat, nlon);
-    if (dense()) {
-      points.noalias() = block * fourier[derivative];
-      continue;
-    }
-    scratch.setZero(nlat, nlon);  // half-complex order: real parts 0.., imaginary part of m at nlon - m
-    scratch.col(0) = block.col(0) * (derivative == 0 ? longitude_norm(0) : 0.0);
-    for (int m = 1; m <= p; ++m) {
-      const double k = 0.5 * longitude_norm(m) * std::pow(m, derivative);
-      const auto c = block.col(m), s = block.col(p + m);
-      if (derivative == 0) scratch.col(m) = k * c, scratch.col(nlon - m) = -k * s;
-      if (derivative == 1) scratch.col(m) = k * s, scratch.col(nlon - m) = k * c;
-      if (derivative == 2) scratch.col(m) = -k * c, scratch.col(nlon - m) = k * s;
-    }
-    fftw_execute_r2r(backward, scratch.data(), out.col(f).data());
-  }
-}
-
-Coefficients Basis::Plan::analyze(const Matrix& samples) const {
-  if (samples.rows() != nlat * nlon) throw std::invalid_argument("Basis: samples are not on this grid");
-  const int width = 2 * p + 1, fields = int(samples.cols());
-  Matrix spectrum(nlat, fields * width);
-  Matrix in, out;
-  for (int f = 0; f < fields; ++f) {
-    auto block = spectrum.middleCols(f * width, width);
-    const Eigen::Map<const Matrix> points(samples.col(f).data(), nlat, nlon);
-    if (dense()) {
-      block.noalias() = points * fourier_analysis;
-      continue;
-    }
-    in = points;
-    out.resize(nlat, nlon);
+    in = Eigen::Map<const Matrix>(samples + std::ptrdiff_t(f) * nlat * nlon, nlat, nlon);
     fftw_execute_r2r(forward, in.data(), out.data());
+    const auto row = [&](int at) {
+      return Eigen::Map<Vector>(reinterpret_cast<double*>(spectrum + (std::ptrdiff_t(at) * fields + f) * depth), nlat);
+    };
     for (int m = 0; m <= p; ++m) {
-      const double k = longitude_norm(m) * 2 * pi / nlon;
-      block.col(m) = k * out.col(m);
-      if (m > 0) block.col(p + m) = -k * out.col(nlon - m);
+      row(m) = longitude_norm(m) * out.col(m);
+      if (m > 0) row(p + m) = -longitude_norm(m) * out.col(nlon - m);
     }
   }
+}
+
+Coefficients Basis::Plan::analyze(const double* samples, int fields) const {
   Coefficients c{p, Matrix(coefficient_count(p), fields)};
-  Matrix part(nlat, 2 * fields), product;
-  for (int m = 0; m <= p; ++m) {
-    for (int f = 0; f < fields; ++f) {
-      part.col(f) = spectrum.col(f * width + m);
-      if (m > 0) part.col(fields + f) = spectrum.col(f * width + p + m);
-    }
-    product.noalias() = analysis[m] * part.leftCols(m == 0 ? fields : 2 * fields);
-    for (int f = 0; f < fields; ++f)
-      for (int n = m; n <= p; ++n) {
-        c.values(coefficient_index(n, m), f) = product(n - m, f);
-        if (m > 0) c.values(coefficient_index(n, -m), f) = product(n - m, fields + f);
-      }
-  }
+  const LaneBuffer spectrum(std::size_t(transform->spectrum_size(fields)));
+  if (dense())
+    transform->spectrum_of(samples, fields, spectrum.get());
+  else
+    fast_analysis(samples, fields, spectrum.get());
+  transform->project(spectrum.get(), fields, c.values.data());
   return c;
 }
 
@@ -199,50 +162,72 @@ const Vector& Basis::sin_theta() const { return plan_->sin_theta; }
 
 GridValues Basis::synthesize(const Coefficients& c) const {
   GridValues g{plan_->q, {}};
-  plan_->longitude(plan_->latitude(c, 1), 0, 0, g.values);
+  Wanted wanted{{{0, 1}, {}, {}}, {}};
+  wanted.out[0][0] = plan_->sized(g.values, c);
+  plan_->synthesize(c, wanted);
   return g;
 }
 
 FirstDerivatives Basis::first(const Coefficients& c) const {
-  const Matrix spectrum = plan_->latitude(c, 2);
   FirstDerivatives d;
-  plan_->longitude(spectrum, 0, 0, d.value);
-  plan_->longitude(spectrum, 1, 0, d.t);
-  plan_->longitude(spectrum, 0, 1, d.f);
+  Wanted wanted{{{0, 2}, {0, 1}, {}}, {}};
+  wanted.out[0][0] = plan_->sized(d.value, c);
+  wanted.out[0][1] = plan_->sized(d.t, c);
+  wanted.out[1][0] = plan_->sized(d.f, c);
+  plan_->synthesize(c, wanted);
   return d;
 }
 
 SecondDerivatives Basis::second(const Coefficients& c) const {
-  const Matrix spectrum = plan_->latitude(c, 3);
   SecondDerivatives d;
-  plan_->longitude(spectrum, 0, 0, d.value);
-  plan_->longitude(spectrum, 1, 0, d.t);
-  plan_->longitude(spectrum, 0, 1, d.f);
-  plan_->longitude(spectrum, 2, 0, d.tt);
-  plan_->longitude(spectrum, 1, 1, d.tf);
-  plan_->longitude(spectrum, 0, 2, d.ff);
+  Wanted wanted{{{0, 3}, {0, 2}, {0, 1}}, {}};
+  wanted.out[0][0] = plan_->sized(d.value, c);
+  wanted.out[0][1] = plan_->sized(d.t, c);
+  wanted.out[0][2] = plan_->sized(d.tt, c);
+  wanted.out[1][0] = plan_->sized(d.f, c);
+  wanted.out[1][1] = plan_->sized(d.tf, c);
+  wanted.out[2][0] = plan_->sized(d.ff, c);
+  plan_->synthesize(c, wanted);
+  return d;
+}
+
+SecondDerivatives Basis::derivatives(const Coefficients& c) const {
+  SecondDerivatives d;
+  Wanted wanted{{{1, 3}, {0, 2}, {0, 1}}, {}};
+  wanted.out[0][1] = plan_->sized(d.t, c);
+  wanted.out[0][2] = plan_->sized(d.tt, c);
+  wanted.out[1][0] = plan_->sized(d.f, c);
+  wanted.out[1][1] = plan_->sized(d.tf, c);
+  wanted.out[2][0] = plan_->sized(d.ff, c);
+  plan_->synthesize(c, wanted);
   return d;
 }
 
 FirstDerivatives Basis::slopes(const Coefficients& c) const {
-  const Matrix spectrum = plan_->latitude(c, 2);
   FirstDerivatives d;
-  plan_->longitude(spectrum, 1, 0, d.t);
-  plan_->longitude(spectrum, 0, 1, d.f);
+  Wanted wanted{{{1, 2}, {0, 1}, {}}, {}};
+  wanted.out[0][1] = plan_->sized(d.t, c);
+  wanted.out[1][0] = plan_->sized(d.f, c);
+  plan_->synthesize(c, wanted);
   return d;
 }
 
 SecondDerivatives Basis::curvatures(const Coefficients& c) const {
-  const Matrix spectrum = plan_->latitude(c, 3);
   SecondDerivatives d;
-  plan_->longitude(spectrum, 2, 0, d.tt);
-  plan_->longitude(spectrum, 1, 1, d.tf);
-  plan_->longitude(spectrum, 0, 2, d.ff);
+  Wanted wanted{{{2, 3}, {1, 2}, {0, 1}}, {}};
+  wanted.out[0][2] = plan_->sized(d.tt, c);
+  wanted.out[1][1] = plan_->sized(d.tf, c);
+  wanted.out[2][0] = plan_->sized(d.ff, c);
+  plan_->synthesize(c, wanted);
   return d;
 }
 
-Coefficients Basis::analyze(const GridValues& g) const { return plan_->analyze(g.values); }
-Coefficients Basis::analyze(const Matrix& samples) const { return plan_->analyze(samples); }
+Coefficients Basis::analyze(const GridValues& g) const { return analyze(g.values); }
+Coefficients Basis::analyze(const Eigen::Ref<const Matrix>& samples) const {
+  if (samples.rows() != points()) throw std::invalid_argument("Basis: samples are not on this grid");
+  if (samples.outerStride() != samples.rows() && samples.cols() > 1) return analyze(Matrix(samples));
+  return plan_->analyze(samples.data(), int(samples.cols()));
+}
 
 Vec3 unit_vector(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};

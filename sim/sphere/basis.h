@@ -39,10 +39,11 @@ class Basis {
   GridValues synthesize(const Coefficients&) const;
   FirstDerivatives first(const Coefficients&) const;
   SecondDerivatives second(const Coefficients&) const;
-  FirstDerivatives slopes(const Coefficients&) const;       ///< t and f only
-  SecondDerivatives curvatures(const Coefficients&) const;  ///< tt, tf and ff only
+  SecondDerivatives derivatives(const Coefficients&) const;  ///< all but the value
+  FirstDerivatives slopes(const Coefficients&) const;        ///< t and f only
+  SecondDerivatives curvatures(const Coefficients&) const;   ///< tt, tf and ff only
   Coefficients analyze(const GridValues&) const;
-  Coefficients analyze(const Matrix& samples) const;
+  Coefficients analyze(const Eigen::Ref<const Matrix>& samples) const;
 
  private:
   struct Plan;

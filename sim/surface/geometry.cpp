@@ -1,5 +1,7 @@
 #include "sim/surface/geometry.h"
 
+#include "sim/surface/rows.h"
+
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -10,8 +12,6 @@ namespace {
 
 using std::numbers::pi;
 
-Vector dot(const Matrix& a, const Matrix& b) { return a.cwiseProduct(b).rowwise().sum(); }
-
 Matrix cross(const Matrix& a, const Matrix& b) {
   Matrix c(a.rows(), 3);
   for (int d = 0; d < 3; ++d) {
@@ -21,26 +21,23 @@ Matrix cross(const Matrix& a, const Matrix& b) {
   return c;
 }
 
-/// Each row of a times the entry of s.
-Matrix scaled(const Vector& s, const Matrix& a) { return (a.array().colwise() * s.array()).matrix(); }
-
 }  // namespace
 
 Geometry geometry(const Basis& basis, const Coefficients& position) {
   Geometry g;
   g.x = basis.second(position);
   const auto& x = g.x;
-  g.E = dot(x.t, x.t);
-  g.F = dot(x.t, x.f);
-  g.G = dot(x.f, x.f);
+  g.E = row_products(x.t, x.t);
+  g.F = row_products(x.t, x.f);
+  g.G = row_products(x.f, x.f);
   g.n = cross(x.t, x.f);
-  g.W = g.n.rowwise().norm();
+  g.W = row_products(g.n, g.n).cwiseSqrt();
   if (!g.W.allFinite() || g.W.minCoeff() <= 0) throw std::domain_error("the surface is not finite or not regular");
   const Vector inverse = g.W.cwiseInverse(), inverse2 = inverse.cwiseAbs2();
-  g.n = scaled(inverse, g.n);
-  g.L = dot(x.tt, g.n);
-  g.M = dot(x.tf, g.n);
-  g.N = dot(x.ff, g.n);
+  g.n = scaled_rows(inverse, g.n);
+  g.L = row_products(x.tt, g.n);
+  g.M = row_products(x.tf, g.n);
+  g.N = row_products(x.ff, g.n);
   const Eigen::ArrayXd E = g.E, F = g.F, G = g.G, w2 = inverse2;
   g.H = 0.5 * w2 * (E * g.N.array() - 2 * F * g.M.array() + G * g.L.array());
   g.K = w2 * (g.L.array() * g.N.array() - g.M.array().square());
@@ -48,20 +45,21 @@ Geometry geometry(const Basis& basis, const Coefficients& position) {
   g.lap_tt = G * w2;
   g.lap_tf = -2 * F * w2;
   g.lap_ff = E * w2;
-  g.grad_t = scaled(g.lap_tt, x.t) + scaled(0.5 * g.lap_tf, x.f);
-  g.grad_f = scaled(g.lap_ff, x.f) + scaled(0.5 * g.lap_tf, x.t);
-  const Matrix v = scaled(g.lap_tt, x.tt) + scaled(g.lap_tf, x.tf) + scaled(g.lap_ff, x.ff);
-  g.lap_t = -dot(v, g.grad_t);
-  g.lap_f = -dot(v, g.grad_f);
+  const Vector half_tf = 0.5 * g.lap_tf;
+  g.grad_t = sum_of_rows(g.lap_tt, x.t, half_tf, x.f);
+  g.grad_f = sum_of_rows(g.lap_ff, x.f, half_tf, x.t);
+  const Matrix v = sum_of_rows(g.lap_tt, x.tt, g.lap_tf, x.tf) + scaled_rows(g.lap_ff, x.ff);
+  g.lap_t = -row_products(v, g.grad_t);
+  g.lap_f = -row_products(v, g.grad_f);
   return g;
 }
 
 Matrix surface_gradient(const Geometry& g, const FirstDerivatives& s) {
-  return scaled(s.t.col(0), g.grad_t) + scaled(s.f.col(0), g.grad_f);
+  return sum_of_rows(s.t.col(0), g.grad_t, s.f.col(0), g.grad_f);
 }
 
 Vector surface_divergence(const Geometry& g, const Matrix& u_t, const Matrix& u_f) {
-  return dot(g.grad_t, u_t) + dot(g.grad_f, u_f);
+  return row_products(g.grad_t, u_t) + row_products(g.grad_f, u_f);
 }
 
 Vector surface_laplacian(const Geometry& g, const SecondDerivatives& s) {
@@ -77,8 +75,8 @@ Measures measures(const Geometry& g) {
   // The divergence theorem about the mean of the surface points, where cancellation is least.
   const Vec3 origin = g.x.value.transpose() * g.dA / m.area;
   const Matrix y = g.x.value.rowwise() - origin.transpose();
-  const Matrix flux = scaled(g.dA, g.n);  // n dA
-  const Vector height = dot(y, flux);     // y.n dA
+  const Matrix flux = scaled_rows(g.dA, g.n);   // n dA
+  const Vector height = row_products(y, flux);  // y.n dA
   m.volume = height.sum() / 3;
   // int y dV = (1/4) int y (y.n) dA, int y y^T dV = (1/5) int y y^T (y.n) dA
   const Vec3 offset = y.transpose() * height / (4 * m.volume);
@@ -96,7 +94,7 @@ AreaVolume area_volume(const Basis& basis, const Coefficients& position) {
   const Vector weight = basis.weights().cwiseQuotient(basis.sin_theta());
   const Vec3 origin = x.value.colwise().mean().transpose();
   const Matrix y = x.value.rowwise() - origin.transpose();
-  return {weight.dot(n.rowwise().norm()), weight.dot(dot(y, n)) / 3};
+  return {weight.dot(row_products(n, n).cwiseSqrt()), weight.dot(row_products(y, n)) / 3};
 }
 
 double inclination(const Eigen::Matrix3d& moments) {

@@ -1,6 +1,7 @@
 #include "sim/surface/labels.h"
 
 #include "sim/sphere/norms.h"
+#include "sim/surface/rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,13 +59,11 @@ Place at(const SlidingPath& path, double time) {
 
 /// (a, b) with a x_theta + b x_phi = w in the sense of least squares: the velocity of the grid over the parameters.
 Matrix parameter_velocity(const FirstDerivatives& x, const Matrix& w) {
+  const Eigen::ArrayXd E = row_products(x.t, x.t), F = row_products(x.t, x.f), G = row_products(x.f, x.f),
+                       determinant = E * G - F * F, along_t = row_products(x.t, w), along_f = row_products(x.f, w);
   Matrix rates(w.rows(), 2);
-  for (Eigen::Index k = 0; k < w.rows(); ++k) {
-    const double E = x.t.row(k).squaredNorm(), F = x.t.row(k).dot(x.f.row(k)), G = x.f.row(k).squaredNorm(),
-                 determinant = E * G - F * F, along_t = x.t.row(k).dot(w.row(k)), along_f = x.f.row(k).dot(w.row(k));
-    rates(k, 0) = (G * along_t - F * along_f) / determinant;
-    rates(k, 1) = (E * along_f - F * along_t) / determinant;
-  }
+  rates.col(0) = (G * along_t - F * along_f) / determinant;
+  rates.col(1) = (E * along_f - F * along_t) / determinant;
   return rates;
 }
 

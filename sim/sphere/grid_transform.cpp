@@ -1,0 +1,303 @@
+#include "sim/sphere/grid_transform.h"
+
+#include "sim/sphere/fourier_sums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <type_traits>
+
+namespace sim {
+
+namespace {
+
+using std::numbers::pi;
+
+/// The first `count` lanes, the others 0.
+Lane load_some(const double* from, int count) {
+  Lane v{};
+  switch (count) {
+    case 1:
+      __builtin_memcpy(&v, from, sizeof(double));
+      return v;
+    case 2:
+      __builtin_memcpy(&v, from, 2 * sizeof(double));
+      return v;
+    case 3:
+      __builtin_memcpy(&v, from, 3 * sizeof(double));
+      return v;
+    default:
+      return load_lane(from);
+  }
+}
+
+void store_some(double* to, Lane v, int count) {
+  switch (count) {
+    case 1:
+      __builtin_memcpy(to, &v, sizeof(double));
+      return;
+    case 2:
+      __builtin_memcpy(to, &v, 2 * sizeof(double));
+      return;
+    case 3:
+      __builtin_memcpy(to, &v, 3 * sizeof(double));
+      return;
+    default:
+      store_lane(to, v);
+  }
+}
+
+/// Calls f with the widths 3, 3, ... and the rest of 1 or 2 as constants, and where each starts.
+template <class F>
+void in_threes(int count, F&& f) {
+  int at = 0;
+  for (; at + 3 <= count; at += 3) f(std::integral_constant<int, 3>{}, at);
+  if (count - at == 2) f(std::integral_constant<int, 2>{}, at);
+  if (count - at == 1) f(std::integral_constant<int, 1>{}, at);
+}
+
+/// ... 4, 4, ... and the rest.
+template <class F>
+void in_fours(int count, F&& f) {
+  int at = 0;
+  for (; at + 4 <= count; at += 4) f(std::integral_constant<int, 4>{}, at);
+  in_threes(count - at, [&](auto width, int from) { f(width, at + from); });
+}
+
+/// out[r] = sum_k a[r][k] b[k] for R rows of scalars and W vectors.
+template <int R, int W>
+void scalar_rows(const double* a, int depth, const Lane* b, std::ptrdiff_t b_row, Lane* const* out,
+                 std::ptrdiff_t out_at) {
+  Pack<W> x, y, z;
+  for (int k = 0; k < depth; ++k, b += b_row) {
+    x.add(a[k], b);
+    if constexpr (R > 1) y.add(a[depth + k], b);
+    if constexpr (R > 2) z.add(a[2 * depth + k], b);
+  }
+  x.store(out[0] + out_at);
+  if constexpr (R > 1) y.store(out[1] + out_at);
+  if constexpr (R > 2) z.store(out[2] + out_at);
+}
+
+/// Where the vectors of a group go on the first longitude; only some lanes of the last of a column are kept.
+template <int W>
+struct Columns {
+  double* to[W];
+  int kept[W];
+  std::ptrdiff_t latitudes;
+
+  template <bool whole>
+  void write(std::ptrdiff_t longitude, const Pack<W>& v) const {
+    const std::ptrdiff_t at = longitude * latitudes;
+    if constexpr (whole) {
+      store_lane(to[0] + at, v.a);
+      if constexpr (W > 1) store_lane(to[1] + at, v.b);
+      if constexpr (W > 2) store_lane(to[2] + at, v.c);
+    } else {
+      store_some(to[0] + at, v.a, kept[0]);
+      if constexpr (W > 1) store_some(to[1] + at, v.b, kept[1]);
+      if constexpr (W > 2) store_some(to[2] + at, v.c, kept[2]);
+    }
+  }
+};
+
+/// A Fourier half of a spectrum: its rows of cosines and sines, counted from m = 0.
+struct Series {
+  const Lane *cosines, *sines;
+  std::ptrdiff_t row;
+  int degree;
+  bool mean;
+};
+
+/// Fourier synthesis at all longitudes, orbit by orbit.
+template <bool whole, int W>
+void write_orbits(const double* table, int p, const Series series, int longitudes, const Columns<W> columns) {
+  const std::ptrdiff_t width = 2 * p + 1, half = longitudes / 2;
+  const auto sums = [&](std::ptrdiff_t l) {
+    return fourier_sums<W>(table + l * width, p, series.degree, series.mean, series.cosines, series.sines, series.row);
+  };
+  const Mirrored<W> axis = sums(0);
+  columns.template write<whole>(0, axis.member[0]);
+  columns.template write<whole>(half, axis.member[2]);
+  std::ptrdiff_t l = 1;
+  for (; 4 * l < longitudes; ++l) {
+    const Mirrored<W> f = sums(l);
+    columns.template write<whole>(l, f.member[0]);
+    columns.template write<whole>(longitudes - l, f.member[1]);
+    columns.template write<whole>(half - l, f.member[2]);
+    columns.template write<whole>(half + l, f.member[3]);
+  }
+  if (4 * l > longitudes) return;
+  const Mirrored<W> across = sums(l);
+  columns.template write<whole>(l, across.member[0]);
+  columns.template write<whole>(longitudes - l, across.member[1]);
+}
+
+/// Sums of samples over the mirrors of every orbit, [cos even, cos odd, sin even, sin odd][orbit][width]: one of the
+/// vectors. `kept`: lanes, a constant where it is all.
+template <class Kept>
+void fold_orbits(const double* from, std::ptrdiff_t latitudes, std::ptrdiff_t longitudes, Kept kept, Lane* sums,
+                 std::ptrdiff_t width) {
+  const std::ptrdiff_t half = longitudes / 2, kind = (longitudes / 4 + 1) * width;
+  const auto member = [=](std::ptrdiff_t j) { return load_some(from + j * latitudes, kept); };
+  const auto write = [=](std::ptrdiff_t l, Lane f, Lane g, Lane h, Lane i) {
+    const Lane a = f + g, b = h + i, c = f - g, d = h - i;
+    Lane* to = sums + l * width;
+    to[0] = a + b;
+    to[kind] = a - b;
+    to[2 * kind] = c - d;
+    to[3 * kind] = c + d;
+  };
+  write(0, member(0), Lane{}, member(half), Lane{});
+  std::ptrdiff_t l = 1;
+  for (; 4 * l < longitudes; ++l) write(l, member(l), member(longitudes - l), member(half - l), member(half + l));
+  if (4 * l == longitudes) write(l, member(l), member(longitudes - l), Lane{}, Lane{});
+}
+
+/// R scalar products of vectors of `count` lanes, rows of a following each other.
+template <int R>
+Lane scalar_products(const Lane* a, const Lane* b, int count) {
+  Lane sum[4] = {};
+  for (int v = 0; v < count; ++v)
+    for (int r = 0; r < R; ++r) sum[r] += a[r * count + v] * b[v];
+  return lane_sums(sum[0], sum[1], sum[2], sum[3]);
+}
+
+}  // namespace
+
+GridTransform::GridTransform(int order, const GaussLegendre& rule, int longitudes, bool dense)
+    : p_(order),
+      nlat_(int(rule.theta.size())),
+      nlon_(longitudes),
+      lanes_((nlat_ + lanes - 1) / lanes),
+      legendre_{LaneBuffer(std::size_t(legendre_count(p_)) * lanes_),
+                LaneBuffer(std::size_t(legendre_count(p_)) * lanes_),
+                LaneBuffer(std::size_t(legendre_count(p_)) * lanes_)},
+      weighted_(std::size_t(legendre_count(p_)) * lanes_) {
+  const LegendreTable table = legendre_table(p_, rule.theta);
+  const Matrix* const tables[] = {&table.value, &table.d1, &table.d2};
+  for (Eigen::Index k = 0; k < legendre_count(p_); ++k)
+    for (int v = 0; v < lanes_; ++v)
+      for (int e = 0; e < lanes; ++e) {
+        const int i = v * lanes + e;
+        for (int t = 0; t < 3; ++t) legendre_[t].get()[k * lanes_ + v][e] = i < nlat_ ? (*tables[t])(i, k) : 0;
+        weighted_.get()[k * lanes_ + v][e] = i < nlat_ ? table.value(i, k) * rule.weight[i] * (2 * pi / nlon_) : 0;
+      }
+  if (!dense) return;
+  for (int l = 0; l < orbits(); ++l)
+    for (int d = 0; d < 3; ++d) append_fourier_row(fourier_[d], p_, l, nlon_, d);
+}
+
+void GridTransform::along_latitudes(const double* coefficients, int degree, int fields, TableRange range,
+                                    Lane* spectrum) const {
+  const Eigen::Index count = coefficient_count(degree);
+  const std::ptrdiff_t row = std::ptrdiff_t(range.count()) * fields * lanes_;
+  std::vector<double> gathered(std::size_t(degree + 1) * 2 * fields);
+  std::vector<Lane*> out(std::size_t(2) * fields);
+  for (int m = 0; m <= degree; ++m) {
+    const int depth = degree - m + 1, rows = (m == 0 ? 1 : 2) * fields;
+    for (int r = 0; r < rows; ++r) {
+      const int field = r % fields, sign = r < fields ? 1 : -1;
+      const double* c = coefficients + field * count;
+      for (int n = m; n <= degree; ++n) gathered[std::size_t(r) * depth + n - m] = c[coefficient_index(n, sign * m)];
+      out[r] = spectrum + (sign > 0 ? m : p_ + m) * row + field * lanes_;
+    }
+    for (int t = range.first; t < range.last; ++t) {
+      const Lane* table = legendre_[t].get() + first_of(m) * lanes_;
+      const std::ptrdiff_t start = std::ptrdiff_t(t - range.first) * fields * lanes_;
+      in_fours(lanes_, [=, this, &gathered, &out](auto width, int lane) {
+        in_threes(rows, [=, this, &gathered, &out](auto height, int r) {
+          scalar_rows<decltype(height)::value, decltype(width)::value>(gathered.data() + r * depth, depth, table + lane,
+                                                                       lanes_, out.data() + r, start + lane);
+        });
+      });
+    }
+  }
+}
+
+void GridTransform::around(const Lane* spectrum, int degree, int fields, TableRange made, const Wanted& wanted) const {
+  const std::ptrdiff_t row = std::ptrdiff_t(made.count()) * fields * lanes_;
+  const int last = nlat_ - (lanes_ - 1) * lanes;
+  for (int d = 0; d < 3; ++d) {
+    const TableRange range = wanted.tables[d];
+    const Lane* first = spectrum + std::ptrdiff_t(range.first - made.first) * fields * lanes_;
+    in_threes(range.count() * fields * lanes_, [&](auto group, int at) {
+      constexpr int W = decltype(group)::value;
+      Columns<W> columns;
+      columns.latitudes = nlat_;
+      bool whole = true;
+      for (int w = 0; w < W; ++w) {
+        const int column = (at + w) / lanes_, lane = (at + w) % lanes_;
+        columns.to[w] = wanted.out[d][range.first + column / fields] + std::ptrdiff_t(column % fields) * nlat_ * nlon_ +
+                        lane * lanes;
+        columns.kept[w] = lane == lanes_ - 1 ? last : lanes;
+        whole = whole && columns.kept[w] == lanes;
+      }
+      Series series{first + at, first + at + p_ * row, row, degree, d == 0};
+      if (d == 1) std::swap(series.cosines, series.sines);
+      if (whole)
+        write_orbits<true, W>(fourier_[d].data(), p_, series, nlon_, columns);
+      else
+        write_orbits<false, W>(fourier_[d].data(), p_, series, nlon_, columns);
+    });
+  }
+}
+
+void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectrum) const {
+  const int vectors = fields * lanes_, width = 2 * p_ + 1, last = nlat_ - (lanes_ - 1) * lanes;
+  const int count = orbits();
+  LaneBuffer folded(std::size_t(count) * 4 * 3);
+  in_threes(vectors, [&](auto group, int at) {
+    constexpr int W = decltype(group)::value;
+    Lane* const sums = folded.get();
+    const std::ptrdiff_t kind = std::ptrdiff_t(count) * W;
+    for (int w = 0; w < W; ++w) {
+      const int field = (at + w) / lanes_, lane = (at + w) % lanes_;
+      const double* from = samples + std::ptrdiff_t(field) * nlat_ * nlon_ + lane * lanes;
+      if (lane < lanes_ - 1 || last == lanes)
+        fold_orbits(from, nlat_, nlon_, std::integral_constant<int, lanes>{}, sums + w, W);
+      else
+        fold_orbits(from, nlat_, nlon_, last, sums + w, W);
+    }
+    for (int part = 0; part < 4; ++part) {
+      const int start = part == 0 ? 0 : part == 2 ? 2 : 1;
+      const int rows = start > p_ ? 0 : (p_ - start) / 2 + 1, first = start + (part < 2 ? 0 : p_);
+      in_fours(rows, [&](auto height, int r0) {
+        constexpr int R = decltype(height)::value;
+        Pack<W> s, t, u, v;
+        const double* table = fourier_[0].data() + first + 2 * r0;
+        const Lane* x = sums + part * kind;
+        for (int l = 0; l < count; ++l, table += width, x += W) {
+          s.add(table[0], x);
+          if constexpr (R > 1) t.add(table[2], x);
+          if constexpr (R > 2) u.add(table[4], x);
+          if constexpr (R > 3) v.add(table[6], x);
+        }
+        Lane* out = spectrum + std::ptrdiff_t(first + 2 * r0) * vectors + at;
+        s.store(out);
+        if constexpr (R > 1) t.store(out + 2 * vectors);
+        if constexpr (R > 2) u.store(out + 4 * vectors);
+        if constexpr (R > 3) v.store(out + 6 * vectors);
+      });
+    }
+  });
+}
+
+void GridTransform::project(const Lane* spectrum, int fields, double* coefficients) const {
+  const std::ptrdiff_t row = std::ptrdiff_t(fields) * lanes_, count = coefficient_count(p_);
+  for (int m = 0; m <= p_; ++m)
+    for (const int sign : {1, -1}) {
+      if (m == 0 && sign < 0) continue;
+      for (int field = 0; field < fields; ++field) {
+        const Lane* in = spectrum + (sign > 0 ? m : p_ + m) * row + field * lanes_;
+        double* out = coefficients + field * count;
+        in_fours(p_ - m + 1, [&](auto height, int n) {
+          constexpr int R = decltype(height)::value;
+          const Lane sums = scalar_products<R>(weighted_.get() + (first_of(m) + n) * lanes_, in, lanes_);
+          for (int r = 0; r < R; ++r) out[coefficient_index(m + n + r, sign * m)] = sums[r];
+        });
+      }
+    }
+}
+
+}  // namespace sim

@@ -1,0 +1,30 @@
+// Products of vectors given as rows, points x 3, column by column.
+#pragma once
+
+#include "sim/core/types.h"
+
+namespace sim {
+
+/// a.b of every point.
+inline Vector row_products(const Matrix& a, const Matrix& b) {
+  return (a.col(0).array() * b.col(0).array() + a.col(1).array() * b.col(1).array() +
+          a.col(2).array() * b.col(2).array())
+      .matrix();
+}
+
+/// Each row of a times the entry of s.
+inline Matrix scaled_rows(const Vector& s, const Matrix& a) {
+  Matrix r(a.rows(), a.cols());
+  for (Eigen::Index d = 0; d < a.cols(); ++d) r.col(d).array() = s.array() * a.col(d).array();
+  return r;
+}
+
+/// s a + t b, row by row.
+inline Matrix sum_of_rows(const Vector& s, const Matrix& a, const Vector& t, const Matrix& b) {
+  Matrix r(a.rows(), a.cols());
+  for (Eigen::Index d = 0; d < a.cols(); ++d)
+    r.col(d).array() = s.array() * a.col(d).array() + t.array() * b.col(d).array();
+  return r;
+}
+
+}  // namespace sim
