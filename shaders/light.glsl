@@ -1,5 +1,6 @@
 // Light fixed to the camera: x right, y up, z toward the viewer. Everything is linear until encode().
-const vec3 key_direction = normalize(vec3(-0.45, 0.75, 0.85));
+//   KEY_LIGHT   where the key light is, defined before every shader
+const vec3 key_direction = normalize(KEY_LIGHT);
 const vec3 fill_direction = normalize(vec3(0.70, -0.25, 0.65));
 
 vec3 decode(vec3 c) {

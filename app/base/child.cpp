@@ -65,4 +65,26 @@ int wait_for_child(pid_t child) {
   return status;
 }
 
+Children::~Children() {
+  stop();
+  for (const pid_t child : running_) wait_for_child(child);
+}
+
+void Children::stop() {
+  if (!stopped_)
+    for (const pid_t child : running_) ::kill(child, SIGTERM);
+  stopped_ = true;
+}
+
+bool Children::collect() {
+  bool good = true;
+  std::erase_if(running_, [&](pid_t child) {
+    int status = 0;
+    if (::waitpid(child, &status, WNOHANG) != child) return false;
+    good = good && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    return true;
+  });
+  return good;
+}
+
 }  // namespace app

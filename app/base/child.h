@@ -23,4 +23,23 @@ pid_t start_child(ChildProgram);
 /// Waits for its end and returns the status of waitpid().
 int wait_for_child(pid_t);
 
+/// Child processes at work. None is left when they go out of scope: they finish what is under way, and are waited for.
+class Children {
+ public:
+  Children() = default;
+  Children(const Children&) = delete;
+  Children& operator=(const Children&) = delete;
+  ~Children();
+  void add(pid_t child) { running_.push_back(child); }
+  std::size_t running() const { return running_.size(); }
+  /// Asks them for an end, once.
+  void stop();
+  /// Forgets those that have ended; false: one of them failed.
+  bool collect();
+
+ private:
+  std::vector<pid_t> running_;
+  bool stopped_ = false;
+};
+
 }  // namespace app

@@ -2,6 +2,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/base/message.h"
+#include "app/base/share.h"
 #include "app/base/version.h"
 #include "app/commands/commands.h"
 #include "app/commands/manual.h"
@@ -46,6 +47,16 @@ bool read_two(std::string_view text, char between, int& first, int& second) {
 }
 
 void parse_shard(Options& options, const std::string& text) {
+  if (text == "auto") {
+    try {
+      const Share share = share_of_environment();
+      options.shard = share.index;
+      options.shards = share.count;
+    } catch (const std::runtime_error& error) {
+      throw CLI::ValidationError("--shard", error.what());
+    }
+    return;
+  }
   if (read_two(text, '/', options.shard, options.shards) && 0 <= options.shard && options.shard < options.shards)
     return;
   throw CLI::ValidationError("--shard", fmt::format("'{}' is not i/n with 0 <= i < n", text));
@@ -114,6 +125,33 @@ constexpr OptionRow option_rows[] = {
     {"to-study",
      [](CLI::App& app, Options& o) {
        app.add_option("-o,--output", o.output, "the folder of the results (default: converge/ and the scene's name)");
+     }},
+    {"to-page",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output,
+                      "the page, NAME.md, whose other sections stay, or its folder (default: validate)");
+     }},
+    {"run-threads",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-j,--jobs", o.jobs, "threads of each run (default: 1)")->check(CLI::Range(1, 1024));
+     }},
+    {"to-sweep",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-o,--output", o.output, "the folder of the results (default: sweep/ and the scene's name)");
+     }},
+    {"runs",
+     [](CLI::App& app, Options& o) {
+       app.add_option("-j,--jobs", o.jobs, "runs at a time, each in one thread (default: one, in all threads)")
+           ->check(CLI::Range(1, 1024));
+     }},
+    {"axes",
+     [](CLI::App& app, Options& o) {
+       app.add_option(
+              "--vary", o.axes,
+              "a key and its values: A,B,... or ranges FIRST:LAST:STEP, FIRST:LAST:*FACTOR (any number of times)")
+           ->required()
+           ->allow_extra_args(false)
+           ->type_name("KEY=VALUES");
      }},
     {"threads",
      [](CLI::App& app, Options& o) {
@@ -191,7 +229,9 @@ constexpr OptionRow option_rows[] = {
      [](CLI::App& app, Options& o) {
        app.add_option_function<std::string>(
               "--shard", [&o](const std::string& text) { parse_shard(o, text); },
-              "i/n: draw frames i, i + n, i + 2n, ... only")
+              "i/n: only every n-th piece of the work, from number i on; auto: as the rank of MPI or the task of a "
+              "Slurm "
+              "array tells")
            ->type_name("I/N");
      }},
     {"style",
@@ -261,6 +301,14 @@ constexpr OptionRow option_rows[] = {
        app.add_option("--motion", o.motion,
                       "write a row per vesicle: its motion in shear, the period, means over it; - is standard output")
            ->type_name("FILE");
+       app.add_option("--suspension", o.suspension,
+                      "write a row per saved state: all vesicles together, their stress in a periodic cell; - is "
+                      "standard output")
+           ->type_name("FILE");
+       app.add_option("--pairs", o.pairs,
+                      "write how many pairs of vesicles a periodic cell holds at each distance, over those at random; "
+                      "- is standard output")
+           ->type_name("FILE");
        app.add_option("--html", o.html, "write a page that shows the trajectory in a browser, to turn and to play")
            ->type_name("FILE");
        app.add_option("--vtk", o.vtk, "write XML PolyData and a .pvd series")->type_name("DIR");
@@ -316,7 +364,8 @@ bool takes(const Command& command, std::string_view option) {
 void add_command(CLI::App& program, const Command& command, Options& options) {
   CLI::App* sub = program.add_subcommand(std::string(command.name), std::string(command.meaning));
   if (!command.word.empty()) {
-    CLI::Option* word = sub->add_option(std::string(command.word), options.word);
+    CLI::Option* word = command.many_words ? sub->add_option(std::string(command.word), options.words)
+                                           : sub->add_option(std::string(command.word), options.word);
     if (!command.files.empty()) word->required();
   }
   if (!command.files.empty()) {

@@ -20,8 +20,11 @@ int compare(const Options&);  ///< 0 same, 1 different, 2 could not compare
 int list(const Options&);
 int reproduce(const Options&);
 int converge(const Options&);
+int validate(const Options&);  ///< 1 when a value misses its reference
+int sweep(const Options&);
 
 std::vector<std::string_view> reproduction_names();  ///< the items of `reproduce`
+std::vector<std::string_view> validation_names();    ///< ... of `validate`
 
 struct Command {
   std::string_view name, meaning;
@@ -30,6 +33,7 @@ struct Command {
   bool many_files;
   std::string_view options;  ///< the options it takes, separated by spaces
   CommandFunction function;
+  bool many_words = false;  ///< any number of that argument, in Options::words
 };
 
 inline constexpr Command commands[] = {
@@ -41,6 +45,9 @@ inline constexpr Command commands[] = {
      "", "SCENE", false,
      "to-study threads set variation results dry-run quiet figure-size theme font-size font text force-study",
      converge},
+    {"sweep", "a scene with all combinations of the values of some keys: a folder each, one table, the phase diagram",
+     "", "SCENE", false,
+     "to-sweep runs set axes results shard dry-run quiet figure-size theme font-size font text force-study", sweep},
     {"render", "the pictures alone: draws a trajectory again with another view or style; several side by side", "",
      "TRAJECTORY", true,
      "to-pictures processes set-pictures quiet gl shader-dir shard style size format time force-file", render},
@@ -55,6 +62,9 @@ inline constexpr Command commands[] = {
      "EXPECTED", "ACTUAL", false, "thresholds ignore json junit html diff update quiet", compare},
     {"reproduce", "recomputes a table or figure of the method's paper; without ITEM, tells which", "ITEM", "", false,
      "to-report quiet gl quick full force-file", reproduce},
+    {"validate",
+     "long runs against what is known, written into a page with tables and figures; without NAME, tells which", "NAME",
+     "", false, "to-page run-threads quiet force-file", validate, true},
     {"list", "the catalogues: flows, shapes, schemes, cameras, styles, figures, themes, quantities, parameters", "KIND",
      "", false, "markdown", list},
 };

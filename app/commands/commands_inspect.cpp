@@ -5,13 +5,13 @@
 #include "app/base/progress.h"
 #include "app/base/result_files.h"
 #include "app/commands/commands.h"
+#include "app/export/catalogue_list.h"
 #include "app/export/csv.h"
 #include "app/export/mesh_export.h"
 #include "app/export/page.h"
 #include "app/export/reference.h"
 #include "app/export/summary.h"
 #include "app/pictures/frames.h"
-#include "app/scene/catalogues.h"
 #include "app/scene/output.h"
 #include "app/scene/scene_file.h"
 #include "app/scene/trajectory_scene.h"
@@ -20,6 +20,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -84,24 +85,42 @@ bool write_page(const Options& options, const sim::TrajectoryReader& trajectory,
   return true;
 }
 
+/// A table that was asked for.
+struct WantedTable {
+  std::filesystem::path path;
+  std::string (*text)(const sim::TrajectoryReader&, const sim::Scene&, std::int64_t first, std::int64_t end);
+};
+std::vector<WantedTable> wanted_tables(const Options& o) {
+  const auto motion = [](const sim::TrajectoryReader& trajectory, const sim::Scene& scene, std::int64_t, std::int64_t) {
+    return motion_csv(trajectory, scene);
+  };
+  std::vector<WantedTable> all;
+  for (const WantedTable& table :
+       {WantedTable{o.csv, csv_text}, {o.motion, motion}, {o.suspension, suspension_csv}, {o.pairs, pairs_csv}})
+    if (!table.path.empty()) all.push_back(table);
+  return all;
+}
+
 }  // namespace
 
 int export_states(const Options& options) {
-  if (options.csv.empty() && options.motion.empty() && options.html.empty() && options.vtk.empty() &&
-      options.ply.empty())
-    throw std::runtime_error("say what to write: --csv FILE, --motion FILE, --html FILE, --vtk DIR or --ply DIR");
+  const std::vector<WantedTable> tables = wanted_tables(options);
+  if (tables.empty() && options.html.empty() && options.vtk.empty() && options.ply.empty())
+    throw std::runtime_error(
+        "say what to write: --csv FILE, --motion FILE, --suspension FILE, --pairs FILE, --html FILE, --vtk DIR or "
+        "--ply DIR");
   if (!options.set.empty() && options.html.empty())
     throw std::runtime_error("--set changes the pictures of --html FILE; there are no others");
-  if (options.csv == "-" && options.motion == "-")
-    throw std::runtime_error("--csv and --motion cannot both go to standard output");
+  const auto to_output = [](const WantedTable& table) { return table.path == "-"; };
+  if (std::count_if(tables.begin(), tables.end(), to_output) > 1)
+    throw std::runtime_error("only one table can go to standard output");
   if (!options.motion.empty() && options.time)
     throw std::runtime_error("--motion is of the whole trajectory; leave out --time");
   const sim::TrajectoryReader trajectory(options.inputs.front());
   const auto [first, end] = chosen_states(trajectory, options.time);
   ResultFiles files(options.inputs, options.force);
   // Before the first of them is written.
-  if (!options.csv.empty()) files.require(options.csv);
-  if (!options.motion.empty()) files.require(options.motion);
+  for (const WantedTable& table : tables) files.require(table.path);
   if (!options.html.empty()) files.require(options.html);
   if (!options.vtk.empty()) files.require_inside(options.vtk / vtk_series);
   for (std::int64_t k = first; k < end; ++k) {
@@ -109,10 +128,9 @@ int export_states(const Options& options) {
     for (int v = 0; !options.ply.empty() && v < trajectory.layout().vesicles; ++v)
       files.require_inside(options.ply / ply_name(static_cast<std::size_t>(v), k));
   }
-  if (!options.csv.empty() || !options.motion.empty()) {
+  if (!tables.empty()) {
     const sim::Scene scene = scene_in(trajectory, options.inputs.front()).scene;
-    if (!options.csv.empty()) files.write(options.csv, csv_text(trajectory, scene, first, end));
-    if (!options.motion.empty()) files.write(options.motion, motion_csv(trajectory, scene));
+    for (const WantedTable& table : tables) files.write(table.path, table.text(trajectory, scene, first, end));
   }
   if (!options.html.empty() && !write_page(options, trajectory, first, end, files)) return interrupted_status;
   struct Kind {
@@ -135,7 +153,7 @@ int export_states(const Options& options) {
       tell(fmt::format("interrupted; {} of {} states are in '{}'", states, end - first, folder.string()));
       return interrupted_status;
     }
-    if (!options.quiet && options.csv != "-" && options.motion != "-")
+    if (!options.quiet && std::none_of(tables.begin(), tables.end(), to_output))
       fmt::print("{}: {} states\n", printable(folder.string()), states);
   }
   files.settle();
@@ -150,7 +168,7 @@ int list(const Options& options) {
     return 0;
   }
   std::vector<std::string_view> names;
-  for (const Catalogue& catalogue : catalogues()) {
+  for (const Catalogue& catalogue : listed_catalogues()) {
     names.push_back(catalogue.name);
     if (options.word.empty()) fmt::print("{:<12} {}\n", catalogue.name, catalogue.meaning);
     if (options.word != catalogue.name) continue;

@@ -9,6 +9,7 @@
 #include "app/figures/figures.h"
 #include "app/figures/movie_plots.h"
 #include "app/pictures/frames.h"
+#include "app/pictures/pictures.h"
 #include "app/pictures/workers.h"
 #include "app/scene/output.h"
 #include "app/scene/scene_text.h"
@@ -146,8 +147,15 @@ int figure(const Options& options) {
   fs::create_directories(folder_of(stem), error);
 
   // Curves of several trajectories share a figure; pictures of states get one each.
+  std::optional<render::Legend> legend;
+  if (render::find_figure(options.word).needs == render::FigureNeeds::stills) {
+    std::vector<PictureSource> pictures;
+    for (std::size_t k = 0; k < trajectories.size(); ++k) pictures.push_back({trajectories[k], settings[k]});
+    legend = shared_legend(pictures);
+  }
   std::vector<std::vector<FigureSource>> sets;
   for (FigureSource& source : figure_sources(trajectories, settings, options.inputs)) {
+    source.legend = legend;
     if (sets.empty() || !takes_several(options.word)) sets.emplace_back();
     sets.back().push_back(std::move(source));
   }

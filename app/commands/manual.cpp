@@ -4,8 +4,8 @@
 #include "app/commands/commands.h"
 #include "app/converge/values.h"
 #include "app/converge/variation.h"
+#include "app/export/catalogue_list.h"
 #include "app/export/reference.h"
-#include "app/scene/catalogues.h"
 
 #include "render/gl/context.h"
 #include "render/image/difference.h"
@@ -66,7 +66,7 @@ std::string entries_of(const ManualCommand& command) {
 using Words = std::vector<std::string>;
 
 Words catalogue_words(std::string_view name) {
-  for (const Catalogue& catalogue : catalogues()) {
+  for (const Catalogue& catalogue : listed_catalogues()) {
     if (catalogue.name != name) continue;
     Words words;
     for (const auto& row : catalogue.rows) words.emplace_back(row.name);
@@ -83,7 +83,7 @@ Words row_words(const Rows& rows) {
 }
 
 Words kinds_of_list() {
-  Words words = row_words(catalogues());
+  Words words = row_words(listed_catalogues());
   words.emplace_back("parameters");
   return words;
 }
@@ -106,7 +106,10 @@ std::vector<Completion> completions_of_options() {
 std::vector<Completion> completions_of_commands() {
   Words items;
   for (const std::string_view name : reproduction_names()) items.emplace_back(name);
-  return {{"figure", catalogue_words("figures")}, {"list", kinds_of_list()}, {"reproduce", items}};
+  return {{"figure", catalogue_words("figures")},
+          {"list", kinds_of_list()},
+          {"reproduce", items},
+          {"validate", words_of(validation_names())}};
 }
 
 /// As one word of bash: nothing of it is expanded.
@@ -171,7 +174,7 @@ std::string manual_page(const std::vector<ManualCommand>& offered) {
                                   roff(key.unit), roff(key.fallback), roff(key.allowed)));
   }
   page += ".SH CATALOGUES\nThe words that scene files and options take; \\fBtanktread list\\fR prints them, too.\n";
-  for (const Catalogue& catalogue : catalogues()) {
+  for (const Catalogue& catalogue : listed_catalogues()) {
     page += fmt::format(".SS \"{}\"\n{}.\n", roff(catalogue.name), roff(catalogue.meaning));
     for (const auto& row : catalogue.rows)
       page += paragraph(fmt::format("\\fB{}\\fR", roff(row.name)), roff(row.meaning));
@@ -215,6 +218,7 @@ _tanktread() {{
     mapfile -t COMPREPLY < <(compgen -W {} -- "$word")
     return
   fi
+  [ "$command $before" != "sweep --vary" ] || before=--set
   case $before in
     --set)
       compopt -o nospace

@@ -21,6 +21,7 @@
 #include "render/overlay/colour_bar.h"
 #include "render/scene/detail.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -85,6 +86,7 @@ struct VesicleSeries {
   PageSeries position, labels, tracers, field;
   std::vector<std::size_t> breaks = {};  ///< frames before which the parametrisation or the labels began anew
   std::int64_t relabelled = 0, laid = 0;
+  sim::Vec3 middle = sim::Vec3::Zero();  ///< of the last frame
 };
 
 class Recorder {
@@ -106,14 +108,20 @@ class Recorder {
     }
   }
 
-  void add(const sim::State& state, const Settings& settings) {
+  void add(const sim::State& unwrapped, const Settings& settings) {
+    const sim::State state = boxed(settings.scene, unwrapped);
     const render::StateSummary summary = render::summarize(state);
     const render::Camera camera = render::make_camera(panel_.framing, panel_.framing.moment(summary));
-    sim::Surroundings surroundings;
+    sim::Surroundings surroundings(sim::cell_at(settings.scene, state.time));
     for (std::size_t v = 0; v < all_.size(); ++v) {
       const sim::VesicleState& vesicle = state.vesicles[v];
       VesicleSeries& s = all_[v];
-      if (frames_ > 0 && (vesicle.relabelled != s.relabelled || vesicle.labels_laid != s.laid))
+      // In a periodic cell another image is shown once the vesicle has left the box.
+      const sim::Vec3 middle = vesicle.position.values.row(0).transpose() / std::sqrt(4 * std::numbers::pi);
+      const bool jumped = settings.scene.cell.size &&
+                          ((middle - s.middle).cwiseAbs().array() > settings.scene.cell.size->array() / 2).any();
+      s.middle = middle;
+      if (frames_ > 0 && (vesicle.relabelled != s.relabelled || vesicle.labels_laid != s.laid || jumped))
         s.breaks.push_back(frames_);
       s.relabelled = vesicle.relabelled;
       s.laid = vesicle.labels_laid;
@@ -244,7 +252,9 @@ void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
     style.text("name", row.name);
     style.text("meaning", row.meaning);
     const bool dots = row.field && panel.painting.legend->mirrored && panel.view.sign_dots;
-    style.text("defines", render::body_defines(row, panel.view, true, false, tracers > 0, dots));
+    const bool occluded = row.occluded && panel.view.occlusion > 0;
+    style.text("defines", render::body_defines(row, panel.view, true, false, tracers > 0, dots, occluded));
+    style.flag("occluded", occluded);
     style.flag("tracers", row.tracers && panel.view.tracers && tracers > 0);
     style.flag("own_colour", row.own_colour);
     style.flag("see_through", row.see_through);
@@ -266,6 +276,7 @@ void write_shaders(Members& page, bool fades) {
       names.insert(file);
     }
   for (const std::string& name : names) files.text(name, render::shader_text(name, {}));
+  page.text("light", render::light_defines());
   page.text("defines", fades ? "#define DEPTH_CUE\n" : "");
   page.raw("shaders", files.whole());
   page.raw("libraries", libraries.whole());
@@ -292,6 +303,8 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.number("edge_step", render::edge_step);
   paint.number("arrow_thickness", render::arrow_thickness);
   paint.number("longest_arrow", render::longest_arrow);
+  paint.vector("key_light", render::key_light);
+  paint.number("occlusion", view.occlusion);
   paint.number("line_width", view.line_width);
   paint.number("outline_width", view.outline_width);
   paint.number("opacity", view.opacity);
@@ -321,7 +334,8 @@ void write_legend(Members& page, const ViewPanel& panel) {
 Settings page_settings(const Settings& settings, std::size_t vesicles) {
   Settings s = settings;
   s.view.views.clear();
-  s.view.style = sim::find_field(s.view.field).needs_neighbours && vesicles < 2 ? "opaque" : "field";
+  s.view.style =
+      sim::find_field(s.view.field).needs_neighbours && vesicles < 2 && !s.scene.cell.size ? "opaque" : "field";
   return s;
 }
 

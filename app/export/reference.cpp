@@ -1,7 +1,7 @@
 #include "app/export/reference.h"
 
+#include "app/export/catalogue_list.h"
 #include "app/export/csv.h"
-#include "app/scene/catalogues.h"
 #include "app/scene/scene_text.h"
 #include "app/scene/scene_values.h"
 
@@ -29,6 +29,7 @@ std::string type_text(const double&) { return "number"; }
 std::string type_text(const std::string&) { return "text"; }
 std::string type_text(const sim::Vec3&) { return "[x, y, z]"; }
 std::string type_text(const std::array<double, 3>&) { return "[n, m, value]"; }
+std::string type_text(const render::FieldRange&) { return "[lowest, highest], []"; }
 template <class T>
 std::string type_text(const std::vector<T>&) {
   return "list of " + type_text(T{});
@@ -43,7 +44,7 @@ std::string allowed_text(const sim::Parameter& p, const std::string& type) {
   if (!p.catalogue.empty()) return fmt::format("see {}", p.catalogue);
   std::string text;
   for (const std::string_view choice : p.choices) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", choice);
-  if (!text.empty()) return text;
+  if (!text.empty()) return type.ends_with("text") ? text : fmt::format("{} or {}", type, text);
   sim::Parameter range = p;
   if (p.zero_is_auto) range.minimum = std::max(1.0, p.minimum);
   const std::string limits = range_text(range);
@@ -115,7 +116,7 @@ std::string reference_page() {
                     escaped(p.unit), escaped(allowed), escaped(p.meaning), escaped(note));
   });
   page += "\n## Catalogues\n\n`tanktread list` prints them too.\n";
-  for (const Catalogue& catalogue : catalogues()) {
+  for (const Catalogue& catalogue : listed_catalogues()) {
     bool keys = false;
     for (const auto& row : catalogue.rows) keys = keys || !row.keys.empty();
     page += fmt::format("\n### {}\n\n{}.\n\n| name | meaning |{}\n|---|---|{}\n", catalogue.name, catalogue.meaning,
@@ -129,6 +130,12 @@ std::string reference_page() {
     page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
   page += "\n## Columns of `export --motion`\n\nOne row per vesicle.\n\n| column | meaning |\n|---|---|\n";
   for (const CsvColumn& column : motion_columns())
+    page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
+  page += "\n## Columns of `export --suspension`\n\nOne row per saved state.\n\n| column | meaning |\n|---|---|\n";
+  for (const CsvColumn& column : suspension_columns())
+    page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
+  page += "\n## Columns of `export --pairs`\n\nOne row per bin of distances.\n\n| column | meaning |\n|---|---|\n";
+  for (const CsvColumn& column : pair_columns())
     page += fmt::format("| `{}` | {} |\n", column.name, escaped(column.meaning));
   page +=
       "\n## Diagnostics of each step\n\nIn the trajectory, group `steps`; those of a vesicle have one number a "

@@ -9,6 +9,7 @@
 #include "app/scene/scene_text.h"
 
 #include "render/core/style.h"
+#include "render/scene/surface.h"
 
 #include <fmt/format.h>
 
@@ -31,12 +32,16 @@ void add_series(render::FigureInput& input, const std::vector<FigureSource>& sou
     for (render::Series& series : series_of(source, scales, rows, false)) input.series.push_back(std::move(series));
 }
 
+std::string hex_of(const render::Colour& c) {
+  const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(c.r), byte(c.g), byte(c.b));
+}
+
 /// That of a dark page, and white on all others.
 std::string ground_of_stills(const render::FigureParameters& parameters) {
   const render::Theme theme = render::page_of(parameters).theme;
   if (!theme.is_dark()) return "white";
-  const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
-  return fmt::format("#{:02x}{:02x}{:02x}", byte(theme.ground.r), byte(theme.ground.g), byte(theme.ground.b));
+  return hex_of(theme.ground);
 }
 
 void add_stills(render::FigureInput& input, const FigureSource& source, const Options& options) {
@@ -56,9 +61,42 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
                       .width = std::max(least, static_cast<int>(std::lround(p.width * pixels))),
                       .height = std::max(least, static_cast<int>(std::lround(p.height * pixels)))});
   }
-  DrawnStills drawn = draw_stills(source.trajectory, settings, ground_of_stills(input.parameters), stills, options);
+  Studio studio = studio_of_stills(options);
+  DrawnStills drawn =
+      draw_stills(studio, {source.trajectory, settings}, source.legend, ground_of_stills(input.parameters), stills);
   input.stills = std::move(drawn.images);
   input.field = std::move(drawn.legend);
+}
+
+/// The first vesicle of each in the course of its motion, seen as the sections cut it.
+void add_diagram_pictures(render::FigureInput& input, const std::vector<FigureSource>& sources,
+                          const Options& options) {
+  const auto [side, reach] = render::diagram_picture(input);
+  const int pixels = std::max(16, static_cast<int>(std::lround(side * render::dots_per_inch(input.parameters) / 72)));
+  Studio studio = studio_of_stills(options);
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    render::DiagramPoint& point = input.diagram.points[k];
+    Settings settings = sources[k].settings;
+    render::ViewParameters& view = settings.view;
+    view.supersampling = std::max(view.supersampling, 3);
+    if (render::find_style(view.style).field) view.style = "opaque";
+    view.colour_by = "order";
+    view.colours = {hex_of(render::diagram_colour(render::page_of(input.parameters).theme, point.kind))};
+    view.depth_cue = 0;
+    view.tracers = false;  // they would look like the marks of places
+    // Other instants are sections, which only this view shows as they are.
+    if (view.camera != "flow-gradient" || input.parameters.plane_normal.normalized().cwiseAbs() != sim::Vec3::UnitY())
+      point.outlines.clear();
+    const sim::State state = state_at(sources[k].trajectory, point.time);
+    const sim::Vec3 target = render::volume_moments(state.vesicles.front().position).centroid;
+    const Still still{.time = point.time,
+                      .target = target,
+                      .half_height = reach * length_of(sources[k].trajectory),
+                      .width = pixels,
+                      .height = pixels,
+                      .alone = true};
+    point.picture = draw_stills(studio, {sources[k].trajectory, settings}, {}, "transparent", {still}).images.front();
+  }
 }
 
 void add_flow(render::FigureInput& input, const FigureSource& source) {
@@ -130,9 +168,11 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
         take({render::chosen_times(times, parameters).front()});
       add_flow(input, first);
       break;
-    case render::FigureNeeds::diagram:
+    case render::FigureNeeds::diagram: {
       input.diagram = phase_diagram(sources, parameters);
+      if (parameters.vesicles == "pictures") add_diagram_pictures(input, sources, options);
       break;
+    }
   }
   return kind.draw(input);
 }

@@ -60,7 +60,7 @@ std::optional<PlotStrip> movie_plots(const std::vector<FigureSource>& sources) {
         fmt::format("a picture of {} x {} has no room for the {} plots of view.plots", width, height, count));
   }
   strip.ground = render::Image(strip.place.width, strip.place.height, 3);
-  const render::Font font(render::Font::Use::paths, page.theme.family, true);
+  const render::Font font = render::caption_font();
   render::draw_on(strip.ground, {0, 0, strip.place.width, strip.place.height}, [&](cairo_t* cairo) {
     render::set_colour(cairo, page.theme.ground);
     cairo_paint(cairo);

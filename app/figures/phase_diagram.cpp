@@ -4,6 +4,7 @@
 #include "app/pictures/instants.h"
 #include "app/scene/scene_text.h"
 
+#include "render/scene/detail.h"
 #include "render/scene/surface.h"
 
 #include <fmt/format.h>
@@ -124,8 +125,8 @@ constexpr std::array kinds{sim::AxisMotion::tank_treading, sim::AxisMotion::swin
                            sim::AxisMotion::untold};
 
 /// Sections of the first vesicle in the course of the last period, relative to its centre.
-std::vector<std::vector<render::ClosedCurve>> outlines_of(const FigureSource& source, const VesicleMotion& motion,
-                                                          const render::FigureParameters& parameters) {
+void add_outlines(render::DiagramPoint& point, const FigureSource& source, const VesicleMotion& motion,
+                  const render::FigureParameters& parameters) {
   constexpr int instants = 6;  // of a motion that turns
   const double end = source.trajectory.time(source.trajectory.count() - 1);
   const bool turns = motion.motion == sim::AxisMotion::swinging || motion.motion == sim::AxisMotion::tumbling;
@@ -134,15 +135,18 @@ std::vector<std::vector<render::ClosedCurve>> outlines_of(const FigureSource& so
     for (int k = 0; k < instants; ++k) times.push_back(motion.from + (motion.to - motion.from) * k / instants);
   times.push_back(turns && motion.to > motion.from ? motion.from : end);
   const double length = length_of(source.trajectory);
-  std::vector<std::vector<render::ClosedCurve>> all;
+  point.time = times.back();
   for (const double time : times) {
-    const sim::Coefficients position = state_at(source.trajectory, time).vesicles.front().position;
+    const sim::State state = state_at(source.trajectory, time);
+    const sim::Coefficients& position = state.vesicles.front().position;
+    const render::Sketch sketch = render::sketch_of(state.vesicles.front());
+    for (const glm::dvec3& p : sketch.points)
+      point.reach = std::max(point.reach, glm::distance(p, sketch.centre) / length);
     std::vector<render::ClosedCurve> curves =
         render::cut(position, render::plane_of(parameters, render::volume_moments(position).centroid));
     for (render::ClosedCurve& curve : curves) curve.points /= length;
-    all.push_back(std::move(curves));
+    point.outlines.push_back(std::move(curves));
   }
-  return all;
 }
 
 }  // namespace
@@ -164,7 +168,7 @@ render::Diagram phase_diagram(const std::vector<FigureSource>& sources, const re
     point.x = x->values[k];
     point.y = y->values[k];
     point.kind = static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), motion.motion) - kinds.begin());
-    point.outlines = outlines_of(sources[k], motion, through_centre);
+    add_outlines(point, sources[k], motion, through_centre);
     diagram.csv += fmt::format("{:.10g},{:.10g},{},{:.10g},{:.10g}\n", point.x, point.y, diagram.kinds[point.kind],
                                motion.period, motion.mean);
   }

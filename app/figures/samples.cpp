@@ -38,6 +38,17 @@ std::vector<VesicleSample> samples_of(sim::Plans& plans, const sim::State& state
   return all;
 }
 
+sim::SuspensionMeasures whole_of(const sim::Scene& scene, std::span<const VesicleSample> samples,
+                                 std::span<const sim::VesicleMeasures> initial, Needs needs) {
+  std::vector<sim::VesicleMeasures> vesicles(samples.begin(), samples.end());
+  std::vector<sim::FlowMeasures> flow;
+  std::vector<sim::Vec3> first;
+  for (const sim::VesicleMeasures& m : initial) first.push_back(m.center);
+  if (needs == Needs::forces)
+    for (const VesicleSample& s : samples) flow.push_back(s.flow);
+  return sim::suspension_measures(scene, vesicles, flow, first);
+}
+
 void add_flow(sim::Plans& plans, const sim::Scene& scene, const sim::State& state, Needs needs,
               std::span<VesicleSample> samples) {
   const std::vector<sim::FlowMeasures> flows = sim::flow_measures(plans, scene, state, needs == Needs::forces);

@@ -15,6 +15,10 @@ std::vector<VesicleSample> samples_of(sim::Plans&, const sim::State&, std::span<
 /// Adds that: with Needs::velocity what takes no forces.
 void add_flow(sim::Plans&, const sim::Scene&, const sim::State&, Needs, std::span<VesicleSample>);
 
+/// The suspension as a whole, stresses only where forces have been added.
+sim::SuspensionMeasures whole_of(const sim::Scene&, std::span<const VesicleSample>,
+                                 std::span<const sim::VesicleMeasures> initial, Needs);
+
 /// Taylor's, (L - B) / (L + B) with the axes of the second moments in the shear plane.
 double deformation_of(const Eigen::Matrix3d& moments);
 

@@ -19,6 +19,7 @@ struct Measurements {
   double length = 1;                                ///< area radius
   std::vector<double> times;                        ///< of the saved states
   std::vector<std::vector<VesicleSample>> samples;  ///< state, vesicle
+  std::vector<sim::SuspensionMeasures> whole;       ///< state
   std::vector<sim::StepRecord> steps;
 };
 
@@ -34,6 +35,7 @@ void measure_states(const FigureSource& source, Needs needs, Measurements& m) {
       for (const sim::VesicleState& v : state.vesicles) initial.push_back(sim::measure(plans, v, 1, 1));
     std::vector<VesicleSample> now = samples_of(plans, state, initial);
     if (needs != Needs::shape) add_flow(plans, source.settings.scene, state, needs, now);
+    m.whole.push_back(whole_of(source.settings.scene, now, initial, needs));
     for (std::size_t v = 0; k > 0 && v < now.size(); ++v)
       now[v].inclination_deg = sim::unwrapped(now[v].inclination_deg, m.samples.back()[v].inclination_deg);
     m.samples.push_back(std::move(now));
@@ -41,7 +43,7 @@ void measure_states(const FigureSource& source, Needs needs, Measurements& m) {
 }
 
 Measurements measurements_of(const FigureSource& source, const std::vector<const QuantityRow*>& rows) {
-  const auto of_states = [](const QuantityRow* row) { return std::holds_alternative<StateCurves>(row->curves); };
+  const auto of_states = [](const QuantityRow* row) { return !std::holds_alternative<StepCurves>(row->curves); };
   Measurements m;
   m.length = length_of(source.trajectory);
   Needs needs = Needs::shape;
@@ -85,6 +87,14 @@ void put_values(const StepCurve& curve, const Measurements& m, std::size_t vesic
   for (const sim::StepRecord& record : m.steps) {
     series.times.push_back(factor * record.time);
     series.values.push_back(curve.value(record, vesicle, units));
+  }
+}
+
+void put_values(const SuspensionCurve& curve, const Measurements& m, std::size_t, const QuantityUnits& units,
+                double factor, render::Series& series) {
+  for (std::size_t k = 0; k < m.whole.size(); ++k) {
+    series.times.push_back(factor * m.times[k]);
+    series.values.push_back(curve.value(m.whole[k], units));
   }
 }
 

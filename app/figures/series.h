@@ -17,8 +17,9 @@ namespace app {
 struct FigureSource {
   const sim::TrajectoryReader& trajectory;
   const Settings& settings;
-  std::string name;       ///< in the legend when there are several sources; else empty
-  std::string file = {};  ///< of the trajectory, for messages
+  std::string name;                           ///< in the legend when there are several sources; else empty
+  std::string file = {};                      ///< of the trajectory, for messages
+  std::optional<render::Legend> legend = {};  ///< of the field in its pictures, where several figures share one
 };
 
 /// Area radius of the first vesicle in the first state, length.

@@ -83,9 +83,8 @@ SteadyPoint steady_point(sim::Plans& plans, const sim::VesicleState& v, double v
           .frequency = std::abs(membrane_frequency(v.position, velocity, m.center, 0)) / rate};
 }
 
-SteadyPoint keller_skalak(double nu, double lambda) {
-  const sim::Vec3 axes = sim::spheroid_axes(nu, true);
-  const double r = axes[0] / axes[1], a1 = std::pow(r, 2.0 / 3), a2 = std::pow(r, -1.0 / 3);
+KellerSkalakFactors keller_skalak_factors(double r) {
+  const double a1 = std::pow(r, 2.0 / 3), a2 = std::pow(r, -1.0 / 3);
   // g = int_0^inf (a1^2 + s)^(-3/2) (a2^2 + s)^(-2) ds with s = x / (1 - x).
   const sim::GaussLegendre rule = sim::gauss_legendre(80);
   double g = 0;
@@ -93,13 +92,18 @@ SteadyPoint keller_skalak(double nu, double lambda) {
     const double x = (1 + std::cos(rule.theta[k])) / 2, s = x / (1 - x);
     g += rule.weight[k] / 2 / ((1 - x) * (1 - x)) * std::pow(a1 * a1 + s, -1.5) * std::pow(a2 * a2 + s, -2);
   }
-  const double f2 = g * (a1 * a1 + a2 * a2) / 2, f0 = 2 / (r + 1 / r), f1 = (r - 1 / r) / 2, q = 1 + f2 * (lambda - 1);
-  const double b = f0 * (f1 + 1 / (f1 * q));
+  return {.f0 = 2 / (r + 1 / r), .f1 = (r - 1 / r) / 2, .f2 = g * (a1 * a1 + a2 * a2) / 2};
+}
+
+SteadyPoint keller_skalak(double nu, double lambda) {
+  const sim::Vec3 axes = sim::spheroid_axes(nu, true);
+  const KellerSkalakFactors f = keller_skalak_factors(axes[0] / axes[1]);
+  const double b = f.b(lambda);
   const bool treads = b > 1;
   return {.reduced_volume = nu,
           .viscosity_contrast = lambda,
           .angle = treads ? std::acos(1 / b) / 2 / pi : std::nan(""),
-          .frequency = treads ? 1 / b / (2 * f1 * q) : 0};
+          .frequency = treads ? 1 / b / (2 * f.f1 * f.q(lambda)) : 0};
 }
 
 namespace {

@@ -26,6 +26,15 @@ struct SteadyPoint {
 /// Of a vesicle that tank-treads in a shear flow of that rate, from one state.
 SteadyPoint steady_point(sim::Plans&, const sim::VesicleState&, double viscosity_contrast, double rate);
 
+/// The three factors of Keller and Skalak's theory for a prolate spheroid of aspect ratio r, f0 = 2/(r + 1/r),
+/// f1 = (r - 1/r)/2, f2 an integral of its ellipsoid: cos(2 theta) = 1/B where B > 1, else it tumbles.
+struct KellerSkalakFactors {
+  double f0 = 0, f1 = 0, f2 = 0;
+  double q(double lambda) const { return 1 + f2 * (lambda - 1); }
+  double b(double lambda) const { return f0 * (f1 + 1 / (f1 * q(lambda))); }
+};
+KellerSkalakFactors keller_skalak_factors(double aspect_ratio);
+
 /// Keller and Skalak 1982 for a prolate spheroid (closed form, approximate physics); frequency 0 and angle NaN where
 /// it tumbles.
 SteadyPoint keller_skalak(double reduced_volume, double viscosity_contrast);

@@ -2,11 +2,13 @@
 
 #include "render/scene/sequence.h"
 #include "sim/core/digits.h"
+#include "sim/membrane/cell.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace app {
@@ -23,6 +25,38 @@ sim::State state_at(const sim::TrajectoryReader& trajectory, double time) {
   sim::State after = trajectory.state(low);
   if (low == 0 || time >= after.time) return after;
   return render::interpolated(trajectory.state(low - 1), after, time);
+}
+
+sim::State boxed(const sim::Scene& scene, sim::State state) {
+  if (!scene.cell.size) return state;
+  const double constant = std::sqrt(4 * std::numbers::pi);  // coefficient of 1
+  for (sim::VesicleState& v : state.vesicles) {
+    const sim::Vec3 middle = v.position.values.row(0).transpose() / constant;
+    const Eigen::RowVector3d shift = constant * sim::into_box(scene, state.time, middle).transpose();
+    v.position.values.row(0) += shift;
+    v.position_before.values.row(0) += shift;
+  }
+  return state;
+}
+
+std::vector<render::FlowLines::Line> edges_of_cell(const sim::Scene& scene) {
+  std::vector<render::FlowLines::Line> edges;
+  if (!scene.cell.size) return edges;
+  const sim::Vec3 half = *scene.cell.size / 2;
+  for (int along = 0; along < 3; ++along)
+    for (const double b : {-1.0, 1.0})
+      for (const double c : {-1.0, 1.0}) {
+        render::FlowLines::Line& edge = edges.emplace_back();
+        constexpr int parts = 24;  // each fades on its own under what lies over the picture
+        for (int k = 0; k <= parts; ++k) {
+          sim::Vec3 point;
+          point[along] = (2.0 * k / parts - 1) * half[along];
+          point[(along + 1) % 3] = b * half[(along + 1) % 3];
+          point[(along + 2) % 3] = c * half[(along + 2) % 3];
+          edge.points.push_back(render::to_glm(point));
+        }
+      }
+  return edges;
 }
 
 std::vector<std::int64_t> instants_to_look_at(const sim::TrajectoryReader& trajectory) {

@@ -4,6 +4,7 @@
 
 #include "app/scene/settings.h"
 
+#include "render/scene/frame.h"
 #include "sim/trajectory/trajectory.h"
 
 #include <cstdint>
@@ -14,6 +15,12 @@ namespace app {
 /// The state at any time of a trajectory: cubic Hermite interpolation between saved states; the first and last state
 /// outside.
 sim::State state_at(const sim::TrajectoryReader&, double time);
+
+/// The state as a picture of a periodic cell shows it: each vesicle by that image whose centre is in the box about the
+/// origin. Without a cell, the state itself.
+sim::State boxed(const sim::Scene&, sim::State);
+/// Edges of that box; none without a cell.
+std::vector<render::FlowLines::Line> edges_of_cell(const sim::Scene&);
 
 /// Saved states, the first and the last among them, from which a movie is framed and the range of its field is taken:
 /// a few hundred are enough.

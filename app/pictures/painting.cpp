@@ -6,6 +6,7 @@
 #include "render/core/colormap.h"
 #include "render/core/style.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 
 #include <fmt/format.h>
 
@@ -80,6 +81,7 @@ double quantile(std::vector<double>& values, double share) {
 struct FieldSize {
   double natural = 1;   ///< how large it would be if it were neither zero nor extreme
   double rounding = 0;  ///< smaller differences mean nothing
+  bool nonnegative = false;
 };
 
 /// Both ends moved outward to round numbers. A field that is one value up to rounding gets a range about that value.
@@ -88,7 +90,7 @@ std::pair<double, double> rounded(double low, double high, const FieldSize& size
   if (high - low <= std::max(2 * size.rounding, 1e-6 * largest)) {
     const bool zero = largest <= 2 * size.rounding;
     const double middle = zero ? 0 : (low + high) / 2, room = zero ? size.natural : 0.1 * std::abs(middle);
-    low = middle - room;
+    low = zero && size.nonnegative ? 0 : middle - room;
     high = middle + room;
   }
   const double width = high - low, power = std::pow(10, std::floor(std::log10(width / 10)));
@@ -129,9 +131,10 @@ void give_range(render::Legend& legend, const render::ViewParameters& view, std:
                 const std::vector<double>& shown, bool has_sign, const FieldSize& size,
                 double end = std::numeric_limits<double>::infinity()) {
   auto [low, high] = extent;
+  if (size.nonnegative) low = std::max(low, 0.0);  // between grid points a degree p may undershoot
   if (low < end) high = std::min(high, end);
   const render::ColourMapRow& map = map_for(view, has_sign);
-  if (view.field_range.empty()) {
+  if (!view.field_range.given()) {
     if (map.kind == render::MapKind::diverging && has_sign) {
       const bool uniform = high - low <= 2 * size.rounding + 1e-6 * std::abs(high);
       high = (uniform ? 1.2 : 1) * std::max(std::abs(low), std::abs(high));  // one value is not the end of the bar
@@ -139,15 +142,15 @@ void give_range(render::Legend& legend, const render::ViewParameters& view, std:
     }
     std::tie(low, high) = rounded(low, high, size);
   } else {
-    low = view.field_range[0];
-    high = view.field_range[1];
+    low = view.field_range.ends[0];
+    high = view.field_range.ends[1];
   }
   legend.low = low;
   legend.high = high;
   legend.colours = render::colour_table(map);
   // Only a range about zero puts zero where the map turns.
   legend.mirrored = map.kind == render::MapKind::diverging && std::abs(low + high) <= 1e-9 * (high - low);
-  const double slack = view.field_range.empty() ? 0.005 * (high - low) : size.rounding;
+  const double slack = view.field_range.given() ? size.rounding : 0.005 * (high - low);
   const auto [least, most] = std::minmax_element(shown.begin(), shown.end());
   legend.below = least != shown.end() && *least < low - slack;
   legend.above = most != shown.end() && *most > high + slack;
@@ -176,7 +179,7 @@ void colour_by_quantity(Painting& p, const Quantity& quantity, const Settings& s
   render::Legend legend;
   legend.label = quantity.label;
   render::ViewParameters view = settings.view;
-  view.field_range.clear();
+  view.field_range = {};
   give_range(legend, view,
              {*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end())}, values,
              false, {});
@@ -203,12 +206,12 @@ Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vecto
   if (!render::find_style(view.style).field) return p;
 
   p.field = &sim::find_field(view.field);
-  if (p.field->needs_neighbours && first.vesicles.size() < 2)
+  if (p.field->needs_neighbours && first.vesicles.size() < 2 && !settings.scene.cell.size)
     throw std::invalid_argument(fmt::format("the field '{}' needs two vesicles or more", p.field->name));
   std::vector<double> values, later;  // of what is shown, and of that after the start
   sim::Plans plans;
   const auto add = [&](const sim::State& state, std::vector<double>& to) {
-    sim::Surroundings surroundings;
+    sim::Surroundings surroundings(sim::cell_at(settings.scene, state.time));
     for (std::size_t v = 0; v < state.vesicles.size(); ++v)
       collect(painted_field(plans, p, settings, state, v, surroundings), to);
   };
@@ -230,7 +233,7 @@ Painting plan_painting(const sim::TrajectoryReader& trajectory, const std::vecto
   p.legend->label = label_of(p, settings.scene);
   const std::vector<double> shown = values;  // quantiles reorder
   give_range(*p.legend, view, steady_extent(values, later), shown, p.field->has_sign,
-             {unit * scales.size_of(p.field->scale), unit * scales.rounding_of(p.field->scale)},
+             {unit * scales.size_of(p.field->scale), unit * scales.rounding_of(p.field->scale), !p.field->has_sign},
              p.field->automatic_end);
   return p;
 }
@@ -243,9 +246,18 @@ sim::Coefficients painted_field(sim::Plans& plans, const Painting& p, const Sett
   return field;
 }
 
-void share_legend(const std::vector<Painting*>& paintings, bool given) {
+void share_legend(const std::vector<Painting*>& paintings, const render::FieldRange& range) {
+  const sim::FieldRow* field = paintings.front()->field;
   for (const Painting* p : paintings)
-    if (!p->legend || !p->field || p->field != paintings.front()->field) return;
+    if (p->field != field) {
+      if (!range.shared) return;
+      const auto name = [](const sim::FieldRow* f) { return f ? fmt::format("'{}'", f->name) : "no field"; };
+      throw std::invalid_argument(fmt::format(
+          "view.field_range = \"{}\" needs one field in all: one shows {}, another {}; choose it by view.style and "
+          "view.field",
+          render::range_words[0], name(field), name(p->field)));
+    }
+  if (!field) return;
   const auto mirrored =
       std::find_if(paintings.begin(), paintings.end(), [](const Painting* p) { return p->legend->mirrored; });
   render::Legend all = *(mirrored != paintings.end() ? *mirrored : paintings.front())->legend;
@@ -255,7 +267,7 @@ void share_legend(const std::vector<Painting*>& paintings, bool given) {
     all.below = all.below || p->legend->below;
     all.above = all.above || p->legend->above;
   }
-  if (all.mirrored && !given) {
+  if (all.mirrored && !range.given()) {
     all.high = std::max(std::abs(all.low), std::abs(all.high));
     all.low = -all.high;
   }

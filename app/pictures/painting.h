@@ -28,8 +28,9 @@ Painting plan_painting(const sim::TrajectoryReader&, const std::vector<std::int6
                        double area_radius, const sim::State* still = nullptr);
 
 /// One range for all movies that are drawn side by side, so that equal colours mean equal values; about zero if that of
-/// one is, unless it was `given`. Nothing happens unless all show the same field.
-void share_legend(const std::vector<Painting*>&, bool given);
+/// one is, unless it was given. Unless all show the same field nothing happens; throws std::invalid_argument where the
+/// range is to be shared.
+void share_legend(const std::vector<Painting*>&, const render::FieldRange&);
 
 /// The field of one vesicle in the units of the legend, for make_mesh(); the surroundings are those of the state.
 sim::Coefficients painted_field(sim::Plans&, const Painting&, const Settings&, const sim::State&, std::size_t vesicle,

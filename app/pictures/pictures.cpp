@@ -1,6 +1,7 @@
 #include "app/pictures/pictures.h"
 
 #include "app/pictures/flow_overlays.h"
+#include "app/pictures/instants.h"
 #include "app/pictures/overlays.h"
 
 #include "render/core/style.h"
@@ -10,6 +11,7 @@
 #include "render/scene/hidden.h"
 #include "render/scene/occlusion.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +35,7 @@ std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const si
   if (style.occluded && p.view.occlusion > 0)
     for (const render::Sketch& sketch : sketches) occluders.push_back(render::occluder_of(sketch));
   std::vector<render::Body> bodies;
-  sim::Surroundings surroundings;
+  sim::Surroundings surroundings(sim::cell_at(p.source.settings.scene, state.time));
   for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
     const sim::VesicleState& vesicle = state.vesicles[v];
     const render::Sketch& sketch = sketches[v];
@@ -68,6 +70,7 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   if (p.view.inset) frame.inset = inset_of(p, state, frame.camera, moment.centre);
   frame.captions = captions_of(p, state.time);
   frame.flow_lines = flow_lines_of(studio.plans, p, state, frame.camera, render::lay_out(frame, studio.font).boxes());
+  for (render::FlowLines::Line& edge : edges_of_cell(p.source.settings.scene)) frame.flow_lines.lines.push_back(edge);
   return frame;
 }
 
@@ -98,6 +101,13 @@ Settings plain_settings(const Settings& settings, const std::string& background)
   return plain;
 }
 
+Painting painting_of_movie(const PictureSource& source) {
+  sim::Plans plans;
+  const double area = sim::measure(plans, source.trajectory.state(0).vesicles.front(), 1, 1).area;
+  return plan_painting(source.trajectory, instants_to_look_at(source.trajectory), source.settings,
+                       std::sqrt(area / sim::default_area));
+}
+
 ViewPanel panel_of(const Still& still, const PictureSource& source, const Painting& painting, const sim::State& state) {
   ViewPanel p{.source = source, .view = source.settings.view};
   p.view.size = {still.width, still.height};
@@ -121,29 +131,44 @@ Studio::Studio(const render::GlChoice& choice, const std::filesystem::path& shad
 render::Image draw_picture(Studio& studio, const Production& production, double time) {
   std::vector<render::Image> parts;
   for (const ViewPanel& panel : production.panels) {
-    const sim::State state = state_at(panel.source.trajectory, time);
+    const sim::State state = boxed(panel.source.settings.scene, state_at(panel.source.trajectory, time));
     parts.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
   render::Image whole = parts.size() == 1 && !production.plots ? std::move(parts.front()) : joined(production, parts);
-  if (production.plots) add_plots(whole, *production.plots, time);
+  if (production.plots) add_plots(whole, *production.plots, studio.font, time);
   return whole;
 }
 
-DrawnStills draw_stills(const sim::TrajectoryReader& trajectory, const Settings& settings,
-                        const std::string& background, const std::vector<Still>& stills, const Options& options) {
+Studio studio_of_stills(const Options& options) {
+  return {render::parse_gl_choice(options.gl), options.shader_dir, 1080};
+}
+
+DrawnStills draw_stills(Studio& studio, const PictureSource& source, const std::optional<render::Legend>& legend,
+                        const std::string& background, const std::vector<Still>& stills) {
+  const auto& [trajectory, settings] = source;
   const Settings plain = plain_settings(settings, background);
-  Studio studio(render::parse_gl_choice(options.gl), options.shader_dir, 1080);
-  const double area = sim::measure(studio.plans, trajectory.state(0).vesicles.front(), 1, 1).area;
-  const Painting painting =
-      plan_painting(trajectory, instants_to_look_at(trajectory), plain, std::sqrt(area / sim::default_area));
+  Painting painting = painting_of_movie({trajectory, plain});
+  if (legend && painting.field) painting.legend = legend;
   DrawnStills drawn;
   if (painting.field != nullptr || plain.view.colour_by != "order") drawn.legend = painting.legend;
   for (const Still& still : stills) {
-    const sim::State state = state_at(trajectory, still.time);
+    sim::State state = boxed(settings.scene, state_at(trajectory, still.time));
+    if (still.alone) state.vesicles.resize(1);
     const ViewPanel panel = panel_of(still, {trajectory, plain}, painting, state);
     drawn.images.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
   return drawn;
+}
+
+std::optional<render::Legend> shared_legend(const std::vector<PictureSource>& sources) {
+  const render::FieldRange& range = sources.front().settings.view.field_range;
+  if (!range.shared) return {};
+  std::vector<Painting> own;
+  std::vector<Painting*> paintings;
+  for (const PictureSource& source : sources) own.push_back(painting_of_movie(source));
+  for (Painting& painting : own) paintings.push_back(&painting);
+  share_legend(paintings, range);
+  return own.front().field ? own.front().legend : std::nullopt;
 }
 
 }  // namespace app

@@ -16,12 +16,15 @@ struct Studio {
   render::Renderer renderer;
   render::MeshLevels meshes;
   sim::Plans plans;
-  render::Font font = render::Font();
+  render::Font font = render::caption_font();
   Studio(const render::GlChoice&, const std::filesystem::path& shader_dir, int picture_height);
 };
 
 /// RGB, or RGBA without a ground; production.width x production.height.
 render::Image draw_picture(Studio&, const Production&, double time);
+
+/// For stills of any size.
+Studio studio_of_stills(const Options&);
 
 /// One instant as a panel of a figure: orthographic, without captions, `half_height` above and below `target`.
 struct Still {
@@ -29,13 +32,16 @@ struct Still {
   sim::Vec3 target = sim::Vec3::Zero();
   double half_height = 2;
   int width = 600, height = 400;
+  bool alone = false;  ///< only the first vesicle
 };
 struct DrawnStills {
   std::vector<render::Image> images;
   std::optional<render::Legend> legend;  ///< of the field they show
 };
-/// background: as view.background.
-DrawnStills draw_stills(const sim::TrajectoryReader&, const Settings&, const std::string& background,
-                        const std::vector<Still>&, const Options&);
+/// background: as view.background; legend: of the field, where it is shared with others; else that of the movie.
+DrawnStills draw_stills(Studio&, const PictureSource&, const std::optional<render::Legend>& legend,
+                        const std::string& background, const std::vector<Still>&);
+/// That of the movies of all; nothing where their range is not to be shared, or they show no field.
+std::optional<render::Legend> shared_legend(const std::vector<PictureSource>&);
 
 }  // namespace app

@@ -4,9 +4,8 @@
 
 namespace app {
 
-void add_plots(render::Image& picture, const PlotStrip& strip, double time) {
+void add_plots(render::Image& picture, const PlotStrip& strip, const render::Font& font, double time) {
   render::Image plots = strip.ground;
-  const render::Font font(render::Font::Use::paths, strip.placed.theme.family, true);
   render::draw_on(plots, {0, 0, plots.width, plots.height}, [&](cairo_t* cairo) {
     cairo_scale(cairo, strip.pixels, strip.pixels);
     render::draw_instant({cairo, font, strip.placed.theme}, strip.placed, strip.time_factor * time);

@@ -18,6 +18,6 @@ struct PlotStrip {
 };
 
 /// Pastes the plots of this time beside the views.
-void add_plots(render::Image& picture, const PlotStrip&, double time);
+void add_plots(render::Image& picture, const PlotStrip&, const render::Font&, double time);
 
 }  // namespace app

@@ -36,7 +36,7 @@ SourceMeasures measures_of(const PictureSource& source, bool titled, std::option
   SourceMeasures m;
   std::set<double> laid;
   for (const std::int64_t i : chosen) {
-    const sim::State state = trajectory.state(i);
+    const sim::State state = boxed(settings.scene, trajectory.state(i));
     m.summaries.push_back(render::summarize(state));
     for (const sim::VesicleState& v : state.vesicles)
       if (v.labels_laid > 0) laid.insert(v.labels_laid_time);
@@ -46,7 +46,7 @@ SourceMeasures measures_of(const PictureSource& source, bool titled, std::option
   const sim::VesicleMeasures first = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
   const double area_radius = std::sqrt(first.area / sim::default_area);
   std::optional<sim::State> only;
-  if (still) only = state_at(trajectory, *still);
+  if (still && !settings.view.field_range.shared) only = boxed(settings.scene, state_at(trajectory, *still));
   m.painting = plan_painting(trajectory, chosen, settings, area_radius, only ? &*only : nullptr);
   m.captions.parameters = parameter_caption(settings.scene, area_radius, first.reduced_volume);
   m.captions.scale_length = area_radius;
@@ -83,10 +83,27 @@ Production arranged(const render::ViewParameters& first, std::size_t sources, st
   return production;
 }
 
+/// In a periodic cell, its corners stand for one vesicle more, so that the picture holds them.
+std::vector<render::StateSummary> with_cell(const PictureSource& source, std::vector<render::StateSummary> summaries) {
+  const std::optional<sim::Vec3>& size = source.settings.scene.cell.size;
+  if (!size) return summaries;
+  for (render::StateSummary& s : summaries) {
+    const std::size_t points = s.points_of_each();
+    s.centroids.emplace_back(0);
+    for (std::size_t k = 0; k < points; ++k) {
+      const sim::Vec3 corner(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5);
+      s.points.emplace_back(render::to_glm(sim::Vec3(corner.cwiseProduct(*size))));
+      s.areas.emplace_back(0);
+    }
+  }
+  return summaries;
+}
+
 /// The view with its framing and captions.
 ViewPanel framed_panel(const PictureSource& source, const render::ViewParameters& view, const SourceMeasures& m) {
   ViewPanel p{.source = source, .view = view};
-  p.framing = render::frame_trajectory(m.summaries, view, source.settings.key_frames);
+  p.framing = render::frame_trajectory(view.follow == "vesicle" ? m.summaries : with_cell(source, m.summaries), view,
+                                       source.settings.key_frames);
   p.captions = m.captions;
   p.painting = m.painting;
   p.laid = m.laid;
@@ -138,7 +155,7 @@ Production prepare_pictures(const std::vector<PictureSource>& sources, std::opti
   for (const PictureSource& source : sources) measures.push_back(measures_of(source, sources.size() > 1, still));
   std::vector<Painting*> paintings;
   for (SourceMeasures& m : measures) paintings.push_back(&m.painting);
-  share_legend(paintings, !first.field_range.empty());
+  share_legend(paintings, first.field_range);
 
   std::vector<std::string> cameras = first.views;
   if (cameras.empty()) cameras = {first.camera};

@@ -48,41 +48,6 @@ std::set<FrameFile> frame_files(const std::filesystem::path& frames) {
   return files;
 }
 
-/// The processes at work. None is left when they go out of scope: they finish the frame under way, and are waited for.
-class Children {
- public:
-  Children() = default;
-  Children(const Children&) = delete;
-  Children& operator=(const Children&) = delete;
-  ~Children() {
-    stop();
-    for (const pid_t child : running_) wait_for_child(child);
-  }
-  void add(pid_t child) { running_.push_back(child); }
-  std::size_t running() const { return running_.size(); }
-  /// Asks them for an end, once.
-  void stop() {
-    if (!stopped_)
-      for (const pid_t child : running_) ::kill(child, SIGTERM);
-    stopped_ = true;
-  }
-  /// Forgets those that have ended; false: one of them failed.
-  bool collect() {
-    bool good = true;
-    std::erase_if(running_, [&](pid_t child) {
-      int status = 0;
-      if (::waitpid(child, &status, WNOHANG) != child) return false;
-      good = good && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-      return true;
-    });
-    return good;
-  }
-
- private:
-  std::vector<pid_t> running_;
-  bool stopped_ = false;
-};
-
 }  // namespace
 
 std::optional<std::int64_t> draw_in_processes(const Options& options, const std::filesystem::path& folder) {

@@ -11,6 +11,7 @@
 #include "sim/core/derived.h"
 #include "sim/core/digits.h"
 #include "sim/core/input_file.h"
+#include "sim/membrane/cell.h"
 #include "sim/surface/shapes.h"
 #include "sim/suspension/placements.h"
 
@@ -139,8 +140,6 @@ struct Reader {
   }
   void check(const toml::table& table, render::ViewParameters& p) const {
     if (p.size.size() != 2) fail_at(source_of(table, "size"), "'size' must be two whole numbers, [width, height]");
-    if (!p.field_range.empty() && (p.field_range.size() != 2 || !(p.field_range[0] < p.field_range[1])))
-      fail_at(source_of(table, "field_range"), "'field_range' must be two numbers, [lowest, highest], or []");
     if (p.cut_normal.norm() == 0) fail_at(source_of(table, "cut_normal"), "'cut_normal' must not be the zero vector");
     if (p.up.norm() == 0) fail_at(source_of(table, "up"), "'up' must not be the zero vector");
     try {
@@ -219,8 +218,30 @@ struct Reader {
     }
   }
 
+  /// The table that is meant: of several, the first one with the key.
+  const toml::table& table_with(std::string_view section, std::string_view key) const {
+    const toml::node* node = root.get(section);
+    if (node && node->is_table()) return *node->as_table();
+    if (node && node->is_array())
+      for (const toml::node& item : *node->as_array())
+        if (const toml::table* table = item.as_table(); table && table->contains(key)) return *table;
+    return root;
+  }
+  void check_cell(const sim::Scene& scene) const {
+    if (const auto objection = sim::cell_objection(scene))
+      fail_at(source_of(table_with(objection->table, objection->key), objection->key), objection->reason);
+    if (!scene.cell.size) return;
+    const toml::table& placement = table_with("placement", "volume_fraction");
+    if (!placement.contains("volume_fraction")) return;
+    for (const sim::PlacementParameters& p : scene.placements)
+      if (p.kind == "lattice" || p.kind == "box")
+        fail_at(source_of(placement, "volume_fraction"),
+                "the size of the [cell] and 'count' set the volume fraction; leave 'volume_fraction' out");
+  }
+
   /// What depends on more than one table.
   void check_together(const sim::Scene& scene) const {
+    check_cell(scene);
     const sim::NumericsParameters& n = scene.numerics;
     const toml::table* table = root["numerics"].as_table();
     if (!table) return;

@@ -39,6 +39,9 @@ std::string toml_value(const std::array<double, 3>& value) {
   return fmt::format("[{}, {}, {}]", toml_value(value[0]), toml_value(value[1]), toml_value(value[2]));
 }
 std::string toml_value(const sim::Vec3& value) { return toml_value(std::array{value[0], value[1], value[2]}); }
+std::string toml_value(const render::FieldRange& value) {
+  return value.shared ? toml_value(std::string(render::range_words[0])) : toml_value(value.ends);
+}
 
 namespace {
 

@@ -31,6 +31,7 @@ std::vector<std::string> distinct_names(const std::vector<sim::Scene>&, const st
 /// A value in TOML, with the shortest digits that give the same number.
 std::string toml_value(bool), toml_value(int), toml_value(double), toml_value(const std::string&);
 std::string toml_value(const sim::Vec3&), toml_value(const std::array<double, 3>&);
+std::string toml_value(const render::FieldRange&);
 template <class T>
 std::string toml_value(const std::vector<T>& list) {
   std::string text;

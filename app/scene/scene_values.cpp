@@ -73,13 +73,19 @@ std::string range_text(const sim::Parameter& p) {
   return text;
 }
 
+namespace {
+
+std::string instead_of(const sim::Parameter& p) { return p.instead.empty() ? "" : fmt::format("; {}", p.instead); }
+
+}  // namespace
+
 std::string range_error(const sim::Parameter& p, double value) {
   const bool low = p.exclusive_minimum ? !(value > p.minimum) : !(value >= p.minimum);
   const bool high = p.exclusive_maximum ? !(value < p.maximum) : !(value <= p.maximum);
   const bool unlimited = p.minimum == -sim::unlimited && p.maximum == sim::unlimited;
   if (std::isnan(value)) return fmt::format("'{}' must be a number, not nan", p.name);
   if (unlimited || !(low || high)) return {};
-  return fmt::format("'{}' must be {}, not {}", p.name, range_text(p), value);
+  return fmt::format("'{}' must be {}, not {}{}", p.name, range_text(p), value, instead_of(p));
 }
 
 namespace {
@@ -104,7 +110,7 @@ std::string as_written(const toml::node& node) {
 }
 
 [[noreturn]] void wrong_type(const sim::Parameter& p, const toml::node& node, std::string_view wanted) {
-  fail_at(node.source(), fmt::format("'{}' must be {}, not {}", p.name, wanted, as_written(node)));
+  fail_at(node.source(), fmt::format("'{}' must be {}, not {}{}", p.name, wanted, as_written(node), instead_of(p)));
 }
 
 void check_range(const sim::Parameter& p, const toml::node& node, double value) {
@@ -172,6 +178,20 @@ void read_value(const sim::Parameter& p, const toml::node& node, sim::Vec3& valu
   std::array<double, 3> three{};
   read_value(p, node, three);
   value = sim::Vec3(three[0], three[1], three[2]);
+}
+
+void read_value(const sim::Parameter& p, const toml::node& node, render::FieldRange& value) {
+  value = {};
+  if (node.is_string()) {
+    std::string word;
+    read_value(p, node, word);
+    value.shared = true;
+    return;
+  }
+  read_value(p, node, value.ends);
+  if (value.given() && (value.ends.size() != 2 || !(value.ends[0] < value.ends[1])))
+    fail_at(node.source(),
+            fmt::format("'{}' must be two numbers, [lowest, highest], or [], or \"{}\"", p.name, p.choices[0]));
 }
 
 std::string checksum(std::string_view bytes) {

@@ -28,6 +28,7 @@ void read_value(const sim::Parameter&, const toml::node&, double& value);
 void read_value(const sim::Parameter&, const toml::node&, std::string& value);
 void read_value(const sim::Parameter&, const toml::node&, sim::Vec3& value);
 void read_value(const sim::Parameter&, const toml::node&, std::array<double, 3>& value);
+void read_value(const sim::Parameter&, const toml::node&, render::FieldRange& value);
 
 template <class T>
 void read_value(const sim::Parameter& parameter, const toml::node& node, std::optional<T>& value) {

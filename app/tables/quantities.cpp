@@ -10,6 +10,7 @@ namespace {
 
 using Sample = VesicleSample;
 using Step = sim::StepRecord;
+using Suspension = sim::SuspensionMeasures;
 using Units = QuantityUnits;
 using render::Scale;
 
@@ -156,6 +157,38 @@ const std::vector<QuantityRow>& quantities() {
        .scaling = Scaling::rate,
        .bare_axis = "frequency ω",
        .needs = Needs::velocity},
+      {.name = "relative-viscosity",
+       .meaning = "of the suspension in a periodic cell in steady shear",
+       .axis = "relative viscosity η_{r}",
+       .scale = Scale::linear,
+       .curves = SuspensionCurves{{"η_{r}", [](const Suspension& m, const Units&) { return m.relative_viscosity; }}},
+       .per_vesicle = false,
+       .needs = Needs::forces},
+      {.name = "normal-stress-differences",
+       .meaning = "first and second, of the suspension in a periodic cell in steady shear",
+       .axis = "N / γ̇",
+       .scale = Scale::linear,
+       .curves = SuspensionCurves{{"N_{1}", [](const Suspension& m, const Units&) { return m.normal_stress_1; }},
+                                  {"N_{2}", [](const Suspension& m, const Units&) { return m.normal_stress_2; }}},
+       .per_vesicle = false,
+       .needs = Needs::forces},
+      {.name = "alignment",
+       .meaning = "mean inclination of all vesicles, and its spread among them",
+       .axis = "inclination θ (°)",
+       .scale = Scale::linear,
+       .curves = SuspensionCurves{{"mean", [](const Suspension& m, const Units&) { return m.inclination_mean; }},
+                                  {"spread", [](const Suspension& m, const Units&) { return m.inclination_spread; }}},
+       .per_vesicle = false},
+      {.name = "diffusion",
+       .meaning = "mean squares of how far centres have moved since the start, along the vorticity and the gradient of "
+                  "a shear: twice the self-diffusivity times the time",
+       .axis = "⟨Δ^{2}⟩ / R_{0}^{2}",
+       .scale = Scale::linear,
+       .curves =
+           SuspensionCurves{
+               {"Δy", [](const Suspension& m, const Units& u) { return m.displacement[1] / (u.length * u.length); }},
+               {"Δz", [](const Suspension& m, const Units& u) { return m.displacement[2] / (u.length * u.length); }}},
+       .per_vesicle = false},
       {.name = "gap",
        .meaning = "least distance between two membranes",
        .axis = "gap / R_{0}",

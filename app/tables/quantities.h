@@ -5,6 +5,7 @@
 #include "render/figures/plot.h"
 #include "sim/core/catalogue.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/measures/rheology.h"
 #include "sim/measures/stresslet.h"
 #include "sim/trajectory/trajectory.h"
 
@@ -31,7 +32,7 @@ struct VesicleSample : sim::VesicleMeasures {
   double frequency = 0;         ///< of the membrane round the section with the shear plane, likewise
 };
 
-/// A curve and its value: of a vesicle at a saved state, or of a vesicle in a step.
+/// A curve and its value: of a vesicle at a saved state, of a vesicle in a step, or of all vesicles at a saved state.
 struct StateCurve {
   const char* name;  ///< in a legend
   double (*value)(const VesicleSample&, const QuantityUnits&);
@@ -40,6 +41,12 @@ struct StepCurve {
   const char* name;  ///< in a legend
   double (*value)(const sim::StepRecord&, std::size_t vesicle, const QuantityUnits&);
 };
+/// Of all vesicles at a saved state.
+struct SuspensionCurve {
+  const char* name;
+  double (*value)(const sim::SuspensionMeasures&, const QuantityUnits&);
+};
+using SuspensionCurves = std::vector<SuspensionCurve>;
 using StateCurves = std::vector<StateCurve>;
 using StepCurves = std::vector<StepCurve>;
 
@@ -47,8 +54,8 @@ struct QuantityRow {
   std::string_view name, meaning;
   const char* axis;  ///< label
   render::Scale scale;
-  std::variant<StateCurves, StepCurves> curves;  ///< at least one
-  bool per_vesicle = true;                       ///< else one curve for all
+  std::variant<StateCurves, StepCurves, SuspensionCurves> curves;  ///< at least one
+  bool per_vesicle = true;                                         ///< else one curve for all
   bool differentiate = false;  ///< the values are the rates of change of the function, per time / rate
   Scaling scaling = Scaling::nothing;
   const char* bare_axis = nullptr;  ///< label without that scale

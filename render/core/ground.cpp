@@ -26,8 +26,7 @@ double luma(const Colour& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b
 
 bool Ground::dark() const { return luma(top) + luma(bottom) < 0.9; }
 
-Ground ground_of(std::string_view background) {
-  std::vector<std::string_view> names;
+Ground ground_of(std::string_view background, std::vector<std::string_view> names) {
   for (const NamedGround& row : grounds) {
     if (row.name == background) return row.ground;
     names.push_back(row.name);

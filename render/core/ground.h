@@ -4,6 +4,7 @@
 #include "render/core/palette.h"
 
 #include <string_view>
+#include <vector>
 
 namespace render {
 
@@ -13,10 +14,12 @@ struct Ground {
   bool transparent = false;
   /// Darker than middle grey: text, contours and arrows on it are light.
   bool dark() const;
+  /// In one colour, for pages.
+  Colour mean() const { return {(top.r + bottom.r) / 2, (top.g + bottom.g) / 2, (top.b + bottom.b) / 2}; }
 };
 /// "gradient", "white", "dark", "transparent" or "#rrggbb". Throws std::invalid_argument with one sentence that names
-/// the nearest of them.
-Ground ground_of(std::string_view background);
+/// the nearest of them and of `other` words, which only the caller knows.
+Ground ground_of(std::string_view background, std::vector<std::string_view> other = {});
 
 /// What is written and drawn over a picture.
 struct Inks {

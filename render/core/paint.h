@@ -3,9 +3,11 @@
 
 #include "render/core/ground.h"
 
+#include <fmt/format.h>
 #include <glm/glm.hpp>
 
 #include <cmath>
+#include <string>
 
 namespace render {
 
@@ -13,6 +15,12 @@ inline constexpr double tracer_radius = 0.088;  ///< area radii
 inline constexpr double edge_step = 1.0 / 3;    ///< samples between the hulls of an outline
 /// Arrows of the flow: the longest, and the radius of all; half heights of the picture.
 inline constexpr double longest_arrow = 0.21, arrow_thickness = 0.009;
+
+/// Towards the key light: x right, y up, z to the viewer; any length. Shaders know it by the line that follows.
+inline constexpr glm::dvec3 key_light{-0.45, 0.75, 0.85};
+inline std::string light_defines() {
+  return fmt::format("#define KEY_LIGHT vec3({}, {}, {})\n", key_light.x, key_light.y, key_light.z);
+}
 
 inline glm::vec3 vector_of(const Colour& c) { return {c.r, c.g, c.b}; }
 

@@ -15,8 +15,17 @@ inline constexpr std::array<std::string_view, 2> plot_places{"below", "beside"};
 inline constexpr std::array<std::string_view, 2> detail_names{"auto", "full"};
 inline constexpr std::array<std::string_view, 2> cut_names{"each", "common"};
 inline constexpr std::array<std::string_view, 3> streamline_names{"off", "laboratory", "vesicles"};
+inline constexpr std::array<std::string_view, 1> range_words{"shared"};
 inline constexpr std::array<std::string_view, 5> colour_by_names{"order", "viscosity_contrast", "bending_modulus",
                                                                  "density_difference", "reduced_volume"};
+
+/// Of the colours of a field: two ends, or how they are found.
+struct FieldRange {
+  std::vector<double> ends;  ///< lowest and highest; empty: they follow what is shown
+  bool shared = false;       ///< ... of all instants of all trajectories of the command
+
+  bool given() const { return !ends.empty(); }
+};
 
 /// [view]: how a frame looks.
 struct ViewParameters {
@@ -32,8 +41,8 @@ struct ViewParameters {
   std::string style = "opaque";
   std::string field = "tension";
   std::optional<std::string> colour_map;
-  std::vector<double> field_range;  ///< lowest and highest; empty: of what is shown
-  double opacity = 0.30;            ///< of a ghost's membrane seen straight on
+  FieldRange field_range;
+  double opacity = 0.30;  ///< of a ghost's membrane seen straight on
   sim::Vec3 cut_normal = -sim::Vec3::UnitY();
   double cut_offset = 0;
   std::string cut = "each";
@@ -129,7 +138,9 @@ void visit(P& p, V&& v) {
           .unit = "",
           .meaning =
               "values at both ends of the colour bar; empty: all but the outermost 0.5 % of what is shown, the whole "
-              "movie or movies side by side without what happens at their start alone, or the still"},
+              "movie or movies side by side without what happens at their start alone, or the still; shared: those of "
+              "all movies of the command, in stills and in figures, too",
+          .choices = range_words},
       p.field_range);
   v(Parameter{.name = "opacity",
               .unit = "",
@@ -318,6 +329,7 @@ inline constexpr std::array<std::string_view, 3> window_names{"auto", "common", 
 inline constexpr std::array<std::string_view, 2> frame_names{"laboratory", "vesicle"};
 inline constexpr std::array<std::string_view, 2> flow_background_names{"speed", "none"};
 inline constexpr std::array<std::string_view, 2> text_names{"text", "paths"};
+inline constexpr std::array<std::string_view, 2> diagram_vesicles{"pictures", "sections"};
 inline constexpr std::array<std::string_view, 2> font_names{"sans", "serif"};
 
 /// [[figure]]: one figure a table.
@@ -346,6 +358,7 @@ struct FigureParameters {
   double margin = 1;      ///< round the vesicles in a picture of the flow, R0
   std::string background = "speed";
   std::vector<std::string> axes;  ///< of a phase diagram; empty: found
+  std::string vesicles = "pictures";
 };
 
 template <class P, class V>
@@ -386,10 +399,13 @@ void visit(P& p, V&& v) {
       p.unit);
   v(Parameter{.name = "theme", .unit = "", .meaning = "sizes of text and lines, colours, page", .catalogue = "themes"},
     p.theme);
-  v(Parameter{.name = "ground",
-              .unit = "",
-              .meaning = "of the page: theme, white, dark, transparent, or #rrggbb; ink and colours follow"},
-    p.ground);
+  v(
+      Parameter{
+          .name = "ground",
+          .unit = "",
+          .meaning =
+              "of the page: theme, white, dark, transparent, gradient (its mean), or #rrggbb; ink and colours follow"},
+      p.ground);
   v(Parameter{.name = "font", .unit = "", .meaning = "of all text", .choices = font_names}, p.font);
   v(Parameter{.name = "text",
               .unit = "",
@@ -451,6 +467,11 @@ void visit(P& p, V&& v) {
               .meaning = "of a phase diagram: two keys of the scene, such as vesicle.reduced_volume and flow.rate; "
                          "empty: those in which the scenes differ"},
     p.axes);
+  v(Parameter{.name = "vesicles",
+              .unit = "",
+              .meaning = "in a phase diagram: pictures in the style of the view, coloured by the motion, or sections",
+              .choices = diagram_vesicles},
+    p.vesicles);
 }
 
 }  // namespace render

@@ -61,7 +61,7 @@ const Program& Renderer::program(const std::string& name, const std::string& def
   const std::string key = name + "\n" + defines;
   if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
   const auto text = [&](const std::string& file) {
-    std::string whole = "#version 330 core\n" + defines;
+    std::string whole = "#version 330 core\n" + light_defines() + defines;
     for (const std::string& library : shader_libraries(file)) whole += shader_text(library, shader_dir_);
     return whole + shader_text(file, shader_dir_);
   };

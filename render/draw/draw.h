@@ -65,7 +65,7 @@ class Renderer {
   Palette palette_;
   std::optional<Framebuffer> framebuffer_;
   Image samples_;
-  Font font_;
+  Font font_ = caption_font();
 };
 
 /// RGB picture of frame.view.size, or RGBA where the ground is transparent. The same frame gives the same bytes with

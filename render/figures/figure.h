@@ -11,6 +11,7 @@
 #include "sim/core/types.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace render {
@@ -69,6 +70,9 @@ struct DiagramPoint {
   std::size_t kind = 0;  ///< of its motion: number in Diagram::kinds
   /// Sections at some instants of its motion, the last of which is drawn full; relative to its centre, R0.
   std::vector<std::vector<ClosedCurve>> outlines;
+  double time = 0;               ///< of the last instant
+  double reach = 0;              ///< of what must be seen from its centre, R0
+  std::optional<Image> picture;  ///< of the last instant, diagram_picture() wide and high; in place of the full section
 };
 /// Motions over two parameters.
 struct Diagram {
@@ -152,6 +156,15 @@ struct Sheet {
 };
 /// Rows of panels at one scale that fill the page; the width of each follows its state.
 Sheet sheet_layout(const FigureInput& input);
+
+/// The square of a picture in a phase diagram.
+struct DiagramPicture {
+  double side = 0;   ///< pt
+  double reach = 0;  ///< from its middle to its edge, R0
+};
+DiagramPicture diagram_picture(const FigureInput& input);
+/// Of the vesicles whose motion has this number: that of their mark, but never black.
+Colour diagram_colour(const Theme& theme, std::size_t kind);
 
 /// "γ̇t = 2.5": with enough digits to distinguish the instants of the figure. `time`: as shown.
 std::string time_text(const FigureInput& input, double time);

@@ -44,6 +44,16 @@ Span span_of(const std::vector<double>& values, const std::string& label) {
   return span;
 }
 
+std::pair<Span, Span> spans_of(const Diagram& diagram) {
+  if (diagram.points.empty()) throw std::invalid_argument("a phase diagram needs at least one vesicle");
+  std::vector<double> xs, ys;
+  for (const DiagramPoint& p : diagram.points) {
+    xs.push_back(p.x);
+    ys.push_back(p.y);
+  }
+  return {span_of(xs, diagram.x), span_of(ys, diagram.y)};
+}
+
 /// The range of the whole axis, where the span has `room` at both ends, of `length`.
 Range with_room(const Range& range, double room, double length) {
   const double more = range.size() * room / std::max(length - 2 * room, 1e-9);
@@ -57,6 +67,8 @@ struct DiagramLayout {
   double radius = 0;  ///< of a picture, pt
   double width = 0, height = 0;
 };
+
+constexpr double picture_room = 1.15;  ///< a picture reaches beyond what it shows
 
 double room_round(double radius, const Theme& theme) { return radius + 1.2 * theme.text; }
 
@@ -121,9 +133,10 @@ DiagramLayout layout_of(const FigureInput& input, const Page& page, const Span& 
   return d;
 }
 
-/// The largest distance of a point of the outlines from the centre, R0.
+/// The largest distance of what is shown from its centre, R0.
 double reach_of(const Diagram& diagram) {
   double reach = 0;
+  for (const DiagramPoint& p : diagram.points) reach = std::max(reach, p.reach);
   for (const DiagramPoint& p : diagram.points)
     for (const std::vector<ClosedCurve>& instant : p.outlines)
       for (const ClosedCurve& curve : instant)
@@ -135,33 +148,43 @@ void draw_point(const Pen& pen, const DiagramPoint& point, double x, double y, d
   const Look look = look_of(point.kind);
   const Colour colour = curve_colour(pen.theme, look.colour);
   Panel own;
-  own.x = own.y = {-1.15 * reach, 1.15 * reach};
-  own.width = own.height = 2 * 1.15 * radius;
+  own.x = own.y = {-picture_room * reach, picture_room * reach};
+  own.width = own.height = 2 * picture_room * radius;
   own.left = x - own.width / 2;
   own.top = y - own.height / 2;
   for (std::size_t k = 0; k < point.outlines.size(); ++k) {
     const bool last = k + 1 == point.outlines.size();
+    if (last && point.picture) break;
     for (const ClosedCurve& curve : point.outlines[k])
       draw_closed_curve(pen, own, curve, Eigen::Vector2d::Zero(), {colour, last ? 0.75 : 0.4, last ? 1.0 : 0.45},
                         last ? 0.22 : 0);
+  }
+  if (point.picture) {
+    draw_picture(pen.cairo, *point.picture, own.left, own.top, own.width, own.height);
+    draw_markers(pen, own, {0}, {0}, look.marker, pen.theme.ground, 2.3);  // a rim, on a body of the mark's own colour
   }
   draw_markers(pen, own, {0}, {0}, look.marker, colour, 1.3);
 }
 
 }  // namespace
 
+Colour diagram_colour(const Theme& theme, std::size_t kind) {
+  const Colour colour = curve_colour(theme, look_of(kind).colour);
+  return colour == theme.ink || colour == Colour{} ? Colour{0.62, 0.63, 0.65} : colour;
+}
+
+DiagramPicture diagram_picture(const FigureInput& input) {
+  const auto [x, y] = spans_of(input.diagram);
+  const DiagramLayout layout = layout_of(input, page_of(input.parameters), x, y);
+  return {2 * picture_room * layout.radius, picture_room * reach_of(input.diagram)};
+}
+
 Figure draw_phase_diagram(const FigureInput& input) {
   const Diagram& diagram = input.diagram;
-  if (diagram.points.empty()) throw std::invalid_argument("a phase diagram needs at least one vesicle");
   const Page page = page_of(input.parameters);
-  std::vector<double> xs, ys;
-  for (const DiagramPoint& p : diagram.points) {
-    xs.push_back(p.x);
-    ys.push_back(p.y);
-  }
-  const Span x = span_of(xs, diagram.x), y = span_of(ys, diagram.y);
+  const auto [x, y] = spans_of(diagram);
   const DiagramLayout layout = layout_of(input, page, x, y);
-  const auto paint = [layout, x, y, points = diagram.points, reach = reach_of(diagram), theme = page.theme](
+  const auto paint = [layout, x = x, y = y, points = diagram.points, reach = reach_of(diagram), theme = page.theme](
                          cairo_t* cairo, const Font& font) {
     const Pen pen{cairo, font, theme};
     const Panel& panel = layout.panel;

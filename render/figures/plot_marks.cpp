@@ -169,7 +169,9 @@ void draw_markers_along(const Pen& pen, const Panel& panel, const std::vector<do
 
 void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height,
                   bool smooth) {
-  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height);
+  const bool has_alpha = image.channels == 4;
+  cairo_surface_t* surface =
+      cairo_image_surface_create(has_alpha ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, image.width, image.height);
   unsigned char* data = cairo_image_surface_get_data(surface);
   if (data == nullptr) {
     cairo_surface_destroy(surface);
@@ -179,7 +181,9 @@ void draw_picture(cairo_t* cairo, const Image& image, double left, double top, d
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const std::uint8_t* c = image.at(x, y);
-      const std::uint32_t v = static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2];
+      const std::uint32_t alpha = has_alpha ? c[3] : 255;
+      const auto times = [&](std::uint32_t part) { return (part * alpha + 127) / 255; };  // as Cairo stores it
+      const std::uint32_t v = alpha << 24 | times(c[0]) << 16 | times(c[1]) << 8 | times(c[2]);
       std::memcpy(data + static_cast<std::ptrdiff_t>(y) * stride + 4 * static_cast<std::ptrdiff_t>(x), &v, sizeof v);
     }
   cairo_surface_mark_dirty(surface);
@@ -187,7 +191,8 @@ void draw_picture(cairo_t* cairo, const Image& image, double left, double top, d
   cairo_translate(cairo, left, top);
   cairo_scale(cairo, width / image.width, height / image.height);
   cairo_set_source_surface(cairo, surface, 0, 0);
-  cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);  // or the edges fade into the ground
+  // or the edges fade into the ground
+  if (!has_alpha) cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
   cairo_pattern_set_filter(cairo_get_source(cairo), smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
   cairo_rectangle(cairo, 0, 0, image.width, image.height);
   cairo_fill(cairo);

@@ -30,7 +30,7 @@ void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>&
 /// Marks on a line, about `spacing` apart on the page, the first after the share `phase` of it.
 void draw_markers_along(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
                         Marker marker, const Colour& colour, double spacing, double phase);
-/// An RGB picture in a rectangle of the page; smooth: interpolated when enlarged.
+/// A picture, RGB or RGBA, in a rectangle of the page; smooth: interpolated when enlarged.
 void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height,
                   bool smooth = true);
 

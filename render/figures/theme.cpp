@@ -1,6 +1,6 @@
 #include "render/figures/theme.h"
 
-#include <fmt/format.h>
+#include "render/core/ground.h"
 
 #include <array>
 #include <stdexcept>
@@ -8,8 +8,6 @@
 namespace render {
 
 namespace {
-
-constexpr Colour dark_ground{0.09, 0.10, 0.13};
 
 /// Ink that is read on that ground, and lines that are seen.
 Theme with_ground(Theme theme, const Colour& ground) {
@@ -40,7 +38,7 @@ std::vector<Theme> rows() {
                      .tick = 9,
                      .width = 960,
                      .height = 540};
-  Theme dark = with_ground(slides, dark_ground);
+  Theme dark = with_ground(slides, ground_of("dark").mean());
   dark.name = "dark";
   dark.meaning = "for a talk in a dark room: light ink on a dark ground, a page of 16:9";
   return {{.name = "paper", .meaning = "for print: white, fine lines, text of 9 pt, 180 mm wide"}, slides, dark};
@@ -69,16 +67,10 @@ Theme scaled(Theme theme, double factor) {
 
 Theme on_ground_named(Theme theme, std::string_view ground) {
   if (ground == "theme") return theme;
-  if (ground == "dark") return with_ground(theme, dark_ground);
-  if (ground == "white") return with_ground(theme, white);
-  if (ground == "transparent") {
-    theme.transparent = true;
-    return theme;
-  }
-  if (ground.starts_with('#')) return with_ground(theme, parse_colour(ground));
-  const std::vector<std::string_view> known{"theme", "white", "dark", "transparent"};
-  throw std::invalid_argument(
-      fmt::format("'{}' is no ground of a figure{}, and not #rrggbb", ground, sim::suggestion(ground, known)));
+  const Ground named = ground_of(ground, {"theme"});
+  if (!named.transparent) return with_ground(theme, named.mean());
+  theme.transparent = true;  // the ink is that of the theme
+  return theme;
 }
 
 Colour on_ground(const Theme& theme, const Colour& c) {

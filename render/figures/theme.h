@@ -33,7 +33,7 @@ const std::vector<Theme>& themes();
 Theme find_theme(std::string_view name, double font_size = 0);
 /// Text and lines times the factor.
 Theme scaled(Theme theme, double factor);
-/// The same on another ground: "theme" (its own), "white", "dark", "transparent" or "#rrggbb"; ink and colours follow.
+/// The same on another ground: "theme" (its own) or one of ground_of(), a gradient as its mean; ink and colours follow.
 /// Throws std::invalid_argument for another word.
 Theme on_ground_named(Theme theme, std::string_view ground);
 

@@ -53,6 +53,9 @@ class Font {
   std::shared_ptr<std::vector<PageText>> kept_ = std::make_shared<std::vector<PageText>>();
 };
 
+/// Of what is written into pictures: sans, variables in italics.
+inline Font caption_font() { return Font(Font::Use::paths, FontFamily::sans, true); }
+
 /// The pieces of a text with `_{...}` and `^{...}`.
 struct TextRun {
   std::string text;

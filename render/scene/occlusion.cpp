@@ -1,5 +1,7 @@
 #include "render/scene/occlusion.h"
 
+#include "render/core/paint.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,13 +10,12 @@
 namespace render {
 namespace {
 
-constexpr int rings = Sketch::latitudes + 1, columns = Sketch::longitudes;
+// Of a sketch, poles included.
+constexpr int net_rings = Sketch::latitudes + 1, net_columns = Sketch::longitudes;
 constexpr double large = 80;  // px: from here on all discs count
-// The key light of light.glsl, in eye space.
-const glm::dvec3 key_direction = glm::normalize(glm::dvec3(-0.45, 0.75, 0.85));
 
 std::size_t index_of(int i, int j) {
-  return static_cast<std::size_t>((j + columns) % columns) * rings + static_cast<std::size_t>(i);
+  return static_cast<std::size_t>((j + net_columns) % net_columns) * net_rings + static_cast<std::size_t>(i);
 }
 
 void add(Discs& discs, const glm::dvec3& place, const glm::dvec3& area) {
@@ -25,7 +26,8 @@ void add(Discs& discs, const glm::dvec3& place, const glm::dvec3& area) {
   discs.areas.push_back(size);
 }
 
-// Shares that the discs hide: of the sky, weighted by the cosine, and of a wide lobe round the key light.
+// Shares that the discs hide: of the sky, weighted by the cosine, and of a wide
+// lobe round the key light.
 glm::dvec2 hidden_by(const Discs& discs, const glm::dvec3& place, const glm::dvec3& normal, const glm::dvec3& key) {
   constexpr double pi = std::numbers::pi;
   double sky = 0, sun = 0;
@@ -50,14 +52,15 @@ glm::dvec2 cubic(const std::array<glm::dvec2, 4>& v, double t) {
                      t * (2.0 * v[0] - 5.0 * v[1] + 4.0 * v[2] - v[3] + t * (3.0 * (v[1] - v[2]) + v[3] - v[0])));
 }
 
-// A net of values over the sphere, `stride` of the sketch's points apart; beyond a pole it goes on at the other side.
+// A net of values over the sphere, `stride` of the sketch's points apart;
+// beyond a pole it goes on at the other side.
 struct Values {
   int stride;
   std::vector<glm::dvec2> at;  // as Sketch::points
   const glm::dvec2& operator()(int i, int j) const {
-    if (i < 0) i = -i, j += columns / 2;
-    if (i > rings - 1) i = 2 * (rings - 1) - i, j += columns / 2;
-    return at[index_of(i, j % columns)];
+    if (i < 0) i = -i, j += net_columns / 2;
+    if (i > net_rings - 1) i = 2 * (net_rings - 1) - i, j += net_columns / 2;
+    return at[index_of(i, j % net_columns)];
   }
   glm::dvec2 between(double row, double column) const {
     const int i = static_cast<int>(std::floor(row / stride)), j = static_cast<int>(std::floor(column / stride));
@@ -65,7 +68,7 @@ struct Values {
     for (int b = 0; b < 4; ++b) {
       std::array<glm::dvec2, 4> across{};
       for (int a = 0; a < 4; ++a)
-        across[static_cast<std::size_t>(a)] = (*this)((i + a - 1) * stride, (j + b - 1) * stride + columns);
+        across[static_cast<std::size_t>(a)] = (*this)((i + a - 1) * stride, (j + b - 1) * stride + net_columns);
       along[static_cast<std::size_t>(b)] = cubic(across, row / stride - i);
     }
     return cubic(along, column / stride - j);
@@ -76,10 +79,11 @@ struct Values {
 
 Occluder occluder_of(const Sketch& sketch) {
   Occluder occluder;
-  for (int j = 0; j < columns; ++j)
-    for (int i = 1; i < rings - 1; ++i) add(occluder.fine, sketch.points[index_of(i, j)], sketch.areas[index_of(i, j)]);
-  for (int j = 0; j < columns; j += 2)
-    for (int i = 0; i < rings - 1; i += 2) {
+  for (int j = 0; j < net_columns; ++j)
+    for (int i = 1; i < net_rings - 1; ++i)
+      add(occluder.fine, sketch.points[index_of(i, j)], sketch.areas[index_of(i, j)]);
+  for (int j = 0; j < net_columns; j += 2)
+    for (int i = 0; i < net_rings - 1; i += 2) {
       glm::dvec3 place(0), area(0);
       double sum = 0;
       for (const std::size_t k : {index_of(i, j), index_of(i + 1, j), index_of(i, j + 1), index_of(i + 1, j + 1)}) {
@@ -97,10 +101,11 @@ void shade(Mesh& mesh, std::size_t self, std::span<const Sketch> sketches, std::
            const Camera& camera, double radius) {
   const Sketch& own = sketches[self];
   const bool fine = radius > large;
-  const glm::dvec3 key = glm::transpose(glm::dmat3(camera.view)) * key_direction;
+  const glm::dvec3 key = glm::transpose(glm::dmat3(camera.view)) * glm::normalize(key_light);
   struct Neighbour {
     const Discs* discs;
-    double share;  // 1, smoothly to 0 where it is so far off that it does not matter
+    double share;  // 1, smoothly to 0 where it is so far off that it does not
+                   // matter
   };
   std::vector<Neighbour> neighbours;
   for (std::size_t k = 0; k < sketches.size(); ++k) {
@@ -110,16 +115,17 @@ void shade(Mesh& mesh, std::size_t self, std::span<const Sketch> sketches, std::
     if (share > 0) neighbours.push_back({fine ? &occluders[k].fine : &occluders[k].coarse, share});
   }
   Values values{fine ? 1 : 2, std::vector<glm::dvec2>(own.points.size(), glm::dvec2(1))};
-  for (int j = 0; j < columns; j += values.stride)
-    for (int i = 0; i < rings; i += values.stride) {
-      const bool pole = i == 0 || i == rings - 1;
+  for (int j = 0; j < net_columns; j += values.stride)
+    for (int i = 0; i < net_rings; i += values.stride) {
+      const bool pole = i == 0 || i == net_rings - 1;
       if (pole && j > 0) {
         values.at[index_of(i, j)] = values.at[index_of(i, 0)];
         continue;
       }
       glm::dvec3 area = own.areas[index_of(i, j)];
       if (pole)
-        for (int around = 0; around < columns; ++around) area += own.areas[index_of(i == 0 ? 1 : rings - 2, around)];
+        for (int around = 0; around < net_columns; ++around)
+          area += own.areas[index_of(i == 0 ? 1 : net_rings - 2, around)];
       const glm::dvec3 normal = area / std::max(glm::length(area), 1e-300), place = own.points[index_of(i, j)];
       glm::dvec2 open = 1.0 - hidden_by(fine ? occluders[self].fine : occluders[self].coarse, place, normal, key);
       for (const Neighbour& n : neighbours) open *= 1.0 - n.share * hidden_by(*n.discs, place, normal, key);
@@ -134,10 +140,10 @@ void shade(Mesh& mesh, std::size_t self, std::span<const Sketch> sketches, std::
   };
   for (int j = 0; j < plan.longitudes(); ++j)
     for (int i = 0; i < rings; ++i)
-      put(static_cast<double>(i + 1) * (rings - 1) / plan.latitudes(),
-          static_cast<double>(j) * columns / plan.longitudes());
+      put(static_cast<double>(i + 1) * (net_rings - 1) / plan.latitudes(),
+          static_cast<double>(j) * net_columns / plan.longitudes());
   put(0, 0);
-  put(rings - 1, 0);
+  put(net_rings - 1, 0);
 }
 
 }  // namespace render

@@ -4,8 +4,10 @@
 
 #include "sim/core/types.h"
 
+#include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace sim {
 
@@ -24,5 +26,18 @@ inline Box united(const Box& a, const Box& b) { return {a.low.cwiseMin(b.low), a
 
 /// The pairs i < j of boxes that are no farther apart than `reach`, in ascending order.
 std::vector<std::pair<int, int>> near_pairs(std::span<const Box>, double reach);
+
+/// Sides of a periodic cell, in columns; none: unbounded space.
+using CellSides = std::optional<Eigen::Matrix3d>;
+
+/// Two boxes, the second one moved by whole numbers of the sides.
+struct ImagePair {
+  int first, second;
+  Eigen::Vector3i image;
+  Vec3 shift(const CellSides& sides) const { return sides ? Vec3(*sides * image.cast<double>()) : Vec3(Vec3::Zero()); }
+};
+/// The boxes and images that are no farther apart than `reach`, a box and its own images included, each pair once with
+/// first <= second, in ascending order. Boxes may lie in any cell.
+std::vector<ImagePair> near_images(std::span<const Box>, double reach, const CellSides&);
 
 }  // namespace sim

@@ -37,6 +37,7 @@ struct Parameter {
       false;  ///< optionals that only some kinds have: what holds is computed, so these kinds do without the key
   std::string_view refused = {};  ///< not empty: the key is reserved; giving it is an error with this sentence
   bool is_path = false;           ///< a file name
+  std::string_view instead = {};  ///< what to give where a value is refused
 };
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -209,7 +210,8 @@ void visit(P& p, V&& v) {
               .unit = "",
               .meaning = "lambda, viscosity inside / outside",
               .minimum = 0,
-              .exclusive_minimum = true},
+              .exclusive_minimum = true,
+              .instead = "0.001 is near a bubble, 1000 near a rigid body"},
     p.viscosity_contrast);
   v(Parameter{.name = "bending_modulus",
               .unit = "force length",
@@ -251,8 +253,8 @@ struct NumericsParameters {
   std::string far_field = "auto";
   int interaction_order = 0;  ///< degree of the smooth source grids between vesicles; 0: p^(3/2)
   bool near_rule = true;
-  int near_latitudes = 32;
-  int near_longitudes = 32;
+  int near_latitudes = 0;   ///< 0: as the tolerance asks
+  int near_longitudes = 0;  ///< likewise
   double repulsion_strength = 0;
   std::optional<double> repulsion_range;
   std::optional<double> gap_floor;
@@ -349,15 +351,17 @@ void visit(P& p, V&& v) {
     p.near_rule);
   v(Parameter{.name = "near_latitudes",
               .unit = "",
-              .meaning = "graded latitudes of the near-singular rule",
+              .meaning = "graded latitudes of the near-singular rule; auto: as the tolerance asks",
               .minimum = 4,
-              .maximum = 512},
+              .maximum = 512,
+              .zero_is_auto = true},
     p.near_latitudes);
   v(Parameter{.name = "near_longitudes",
               .unit = "",
-              .meaning = "longitudes of the near-singular rule",
+              .meaning = "longitudes of the near-singular rule; auto: as the tolerance asks",
               .minimum = 4,
-              .maximum = 512},
+              .maximum = 512,
+              .zero_is_auto = true},
     p.near_longitudes);
   v(Parameter{.name = "repulsion_strength",
               .unit = "force/area",
@@ -422,6 +426,25 @@ requires std::same_as<std::remove_const_t<P>, BuoyancyParameters>
 void visit(P& p, V&& v) {
   v(Parameter{.name = "gravity", .unit = "length/time^2", .meaning = "acts on each vesicle's density_difference"},
     p.gravity);
+}
+
+/// A periodic cell round the origin, whose copies fill space. A shear takes its upper and lower neighbours along.
+struct CellParameters {
+  std::optional<Vec3> size;
+};
+
+template <class P, class V>
+requires std::same_as<std::remove_const_t<P>, CellParameters>
+void visit(P& p, V&& v) {
+  v(Parameter{.name = "size",
+              .unit = "length",
+              .meaning =
+                  "lengths along x, y and z of the cell round the origin that repeats in all directions; a shear "
+                  "takes the copies above and below along",
+              .minimum = 0,
+              .exclusive_minimum = true,
+              .when_absent = "unbounded fluid"},
+    p.size);
 }
 
 /// Many copies of the scene's last vesicle, so that a scene says "64 vesicles" in three lines. Reading a scene turns a
@@ -497,6 +520,7 @@ struct Scene {
   std::vector<PlacementParameters> placements;  ///< empty once they have been turned into vesicles
   NumericsParameters numerics;
   BuoyancyParameters buoyancy;
+  CellParameters cell;
 };
 
 /// A table of the scene file.
@@ -517,6 +541,7 @@ void visit_sections(S& scene, V&& v) {
     scene.placements);
   v(Section{"numerics", "how accurately, and by which means", false}, scene.numerics);
   v(Section{"buoyancy", "sedimentation", false}, scene.buoyancy);
+  v(Section{"cell", "periodic cell, of whose copies space is full", false}, scene.cell);
 }
 
 }  // namespace sim

@@ -152,6 +152,13 @@ KernelTensor<Eigen::ArrayXXd> single_kernel(const GradedGrid& g, const Eigen::Ar
 
 }  // namespace
 
+NearOrder near_order_for(int degree, double error) {
+  constexpr int least = 12, even = 2;
+  const double nodes = degree + 12 + 6 * std::log10(1e-4 / error);
+  const int latitudes = std::max(least, even * int(std::ceil(nodes / even)));
+  return {latitudes, latitudes + std::max(0, latitudes - 32)};  // longitudes so as measured
+}
+
 PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
                   NearOrder order, bool with_double) {
   const GradedGrid g = graded_grid(plan, x, target, nearest, order);

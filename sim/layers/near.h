@@ -10,10 +10,14 @@
 
 namespace sim {
 
-/// Nodes of the graded rule. 32 x 32 suffices for motion at p = 8; (48, 64) reaches 1e-5 down to gaps of 0.003.
+/// Nodes of the graded rule. Values at single points, the sharp tips of a prolate included: (48, 64) reaches 1e-5 down
+/// to gaps of 0.003.
 struct NearOrder {
   int latitudes = 32, longitudes = 32;
 };
+/// The least rule with which velocities of vesicles of such a degree err by less than about `error`, beside flows of
+/// unit size, down to gaps of 0.005 radii: measured for p from 6 to 24 (docs/stepping.md).
+NearOrder near_order_for(int degree, double error);
 
 struct NearestPoint {
   Vec3 parameter = Vec3::UnitZ();  ///< on the unit sphere

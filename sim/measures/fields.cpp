@@ -117,21 +117,49 @@ std::pair<Eigen::Index, double> nearest_of(const Net& net, const Vec3& here) {
   return {nearest, std::sqrt(best2)};
 }
 
+/// A vesicle, or an image of one so far from it.
+struct Other {
+  std::size_t vesicle;
+  Vec3 shift;
+};
+/// Those that may be the nearest to a vesicle: all others, and of images the 27 round the nearest.
+std::vector<Other> others_of(const FieldSite& s) {
+  const std::vector<Net>& nets = s.surroundings.nets(s.state);
+  const CellSides& cell = s.surroundings.cell();
+  std::vector<Other> all;
+  for (std::size_t k = 0; k < nets.size(); ++k) {
+    if (!cell) {
+      if (k != s.vesicle) all.push_back({k, Vec3::Zero()});
+      continue;
+    }
+    const Vec3 number = (cell->inverse() * (nets[s.vesicle].centre - nets[k].centre)).array().round();
+    for (int a = -1; a <= 1; ++a)
+      for (int b = -1; b <= 1; ++b)
+        for (int c = -1; c <= 1; ++c)
+          if (k != s.vesicle || a != 0 || b != 0 || c != 0) all.push_back({k, *cell * (number + Vec3(a, b, c))});
+  }
+  return all;
+}
+
 Vector neighbour_distance(const FieldSite& s) {
   const std::vector<Net>& nets = s.surroundings.nets(s.state);
   const double near = 0.3 * nets[s.vesicle].reach;  // below it the exact nearest point, above it that of the net
   const Matrix& x = s.geometry.x.value;
   Vector distance(x.rows());
+  const std::vector<Other> others = others_of(s);
   parallel_for(static_cast<int>(x.rows()), [&](int i) {
-    const Vec3 here = x.row(i);
     double best = std::numeric_limits<double>::infinity();
     // Those that may come nearest first: most of the others need no look.
     std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t k = 0; k < nets.size(); ++k)
-      if (k != s.vesicle) order.emplace_back((here - nets[k].centre).norm() - nets[k].reach, k);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const Net& net = nets[others[k].vesicle];
+      order.emplace_back((x.row(i).transpose() - others[k].shift - net.centre).norm() - net.reach, k);
+    }
     std::sort(order.begin(), order.end());
-    for (const auto& [least, k] : order) {
+    for (const auto& [least, other] : order) {
       if (least >= best) break;
+      const std::size_t k = others[other].vesicle;
+      const Vec3 here = x.row(i).transpose() - others[other].shift;
       const Net& net = nets[k];
       const auto [nearest, rough] = nearest_of(net, here);
       const double height = std::abs(net.normals.row(nearest).dot(here.transpose() - net.points.row(nearest)));
@@ -178,7 +206,7 @@ const FieldRow& find_field(std::string_view name) {
                               suggestion(name, row_names(field_catalogue())));
 }
 
-Surroundings::Surroundings() = default;
+Surroundings::Surroundings(const CellSides& cell) : cell_(cell) {}
 Surroundings::~Surroundings() = default;
 
 const std::vector<Surroundings::Net>& Surroundings::nets(const State& state) {
@@ -189,7 +217,7 @@ const std::vector<Surroundings::Net>& Surroundings::nets(const State& state) {
 
 Coefficients membrane_field(Plans& plans, const FieldRow& field, const State& state, std::size_t vesicle,
                             double bending_modulus, Surroundings& surroundings) {
-  if (field.needs_neighbours && state.vesicles.size() < 2)
+  if (field.needs_neighbours && state.vesicles.size() < 2 && !surroundings.cell())
     throw std::invalid_argument("the field '" + std::string(field.name) + "' needs two vesicles or more");
   const VesicleState& v = state.vesicles.at(vesicle);
   const int p = v.position.order;

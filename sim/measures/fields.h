@@ -8,6 +8,7 @@
 #include "sim/surface/geometry.h"
 
 #include "sim/core/catalogue.h"
+#include "sim/core/cells.h"
 #include "sim/core/parameters.h"
 
 #include <limits>
@@ -15,16 +16,19 @@
 
 namespace sim {
 
-/// Data that the vesicles of one state share when their fields are computed one after the other. Built on first use.
+/// Data that the vesicles of one state share when their fields are computed one after the other, and the periodic cell
+/// they are in. Built on first use.
 class Surroundings {
  public:
   struct Net;
-  Surroundings();
+  explicit Surroundings(const CellSides& = {});
   ~Surroundings();
   Surroundings(const Surroundings&) = delete;
   const std::vector<Net>& nets(const State&);
+  const CellSides& cell() const { return cell_; }
 
  private:
+  CellSides cell_;
   std::vector<Net> nets_;
 };
 
@@ -57,7 +61,7 @@ struct FieldRow {
   std::string_view symbol;  ///< with _{...} and ^{...} for subscripts and superscripts
   FieldScale scale;
   bool has_sign;          ///< zero is a distinguished value, to be visible in the colours
-  bool needs_neighbours;  ///< needs at least two vesicles
+  bool needs_neighbours;  ///< needs at least two vesicles, or images
   FieldFunction function;
   double automatic_end = std::numeric_limits<double>::infinity();  ///< end of an automatic range, in the unit above
 };

@@ -128,7 +128,7 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
     guess[k] = o.motion;
   });
 
-  const Suspension suspension = freeze(s, d, at, guess);
+  const Suspension suspension = freeze(s, d, time, at, guess);
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity, behind);
   Attempt<SuspensionSolve> result = solve(s, suspension, c, r, guess, moving);
   if (!result) return result.rejection();

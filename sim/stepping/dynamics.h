@@ -10,7 +10,9 @@
 #include "sim/surface/labels.h"
 #include "sim/trajectory/trajectory.h"
 
+#include <concepts>
 #include <span>
+#include <type_traits>
 
 namespace sim {
 
@@ -49,6 +51,7 @@ enum class Part {
 
 /// Calls f(part, member) for every member, in the order of the resume record.
 template <class Vesicle, class F>
+requires std::same_as<std::remove_const_t<Vesicle>, VesicleDynamics>
 void visit(Vesicle& v, F&& f) {
   f(Part::vector, v.position);
   f(Part::history, v.history);

@@ -62,7 +62,7 @@ Attempt<Correction> correction_of(const Model& s, const VesicleDynamics& v, cons
 Attempt<State> evaluate(const Model& s, const Dynamics& d) {
   return within_domain([&]() -> Attempt<State> {
     const auto x = positions(d);
-    const Suspension suspension = freeze(s, d, x, motions(d));
+    const Suspension suspension = freeze(s, d, d.time, x, motions(d));
     const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity);
     Attempt<SuspensionSolve> result = solve(s, suspension, 0, r, motions(d), frames(d));
     if (!result) return result.rejection();

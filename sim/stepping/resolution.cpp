@@ -1,6 +1,7 @@
 #include "sim/stepping/resolution.h"
 
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 #include "sim/suspension/gap.h"
 
 #include <algorithm>
@@ -50,12 +51,6 @@ std::vector<Coefficients> velocities_of_less(const Model& s, const Dynamics& bef
   return velocities;
 }
 
-/// Error of position, in area radii, that a degree leaves where the nearest neighbour is `gap` area radii away.
-double film_error(int degree, double gap) {
-  constexpr double decay = 2.1;  // measured between gaps of 0.03 and 0.2
-  return std::exp(-decay * degree * std::sqrt(gap));
-}
-
 bool any_follows(const Scene& scene) {
   return std::any_of(scene.vesicles.begin(), scene.vesicles.end(),
                      [&](const VesicleParameters& v) { return order_follows(scene.time, v); });
@@ -74,6 +69,11 @@ int more_degrees(const SpaceError& e, double allowed) {
 
 }  // namespace
 
+double film_error(int degree, double gap) {
+  constexpr double decay = 2.1;  // measured between gaps of 0.03 and 0.2
+  return std::exp(-decay * degree * std::sqrt(gap));
+}
+
 std::vector<SpaceError> space_errors(const Model& s, const Dynamics& before, const Dynamics& after) {
   const double dt = after.time - before.time;
   const auto less = velocities_of_less(s, before, dt, apart), least = velocities_of_less(s, before, dt, 2 * apart);
@@ -81,7 +81,8 @@ std::vector<SpaceError> space_errors(const Model& s, const Dynamics& before, con
   double largest = 0;
   for (const VesicleDynamics& v : after.vesicles) largest = std::max(largest, area_radius({v.area, v.volume}));
   constexpr double far = 1;  // from there on no film asks for more than the least of degrees
-  const std::vector<double> gaps = gaps_to_neighbours(s.plans, positions(after), far * largest);
+  const std::vector<double> gaps =
+      gaps_to_neighbours(s.plans, positions(after), far * largest, cell_at(s.scene, after.time));
   // As a rate it is large where it is large beside the tolerance, however slow the motion.
   const double motion = 2 * allowed_error(s, before, dt) / (dt * tolerance_of(s.scene.time));
   std::vector<SpaceError> errors;

@@ -26,6 +26,9 @@ struct SpaceError {
 /// it: about 0.4 of the work of a step. Nothing where one of them is impossible.
 std::vector<SpaceError> space_errors(const Model&, const Dynamics& before, const Dynamics& after);
 
+/// Error of position, in area radii, that a degree leaves where the nearest neighbour is `gap` area radii away.
+double film_error(int degree, double gap);
+
 /// Whether the next step is one after which errors are estimated: every tenth.
 bool resolution_due(const Dynamics&);
 /// Puts the estimates for an accepted step into its dynamics and its record.

@@ -23,7 +23,7 @@ Attempt<Advance> globally_implicit(const StepProblem& problem) {
   const Dynamics& d = problem.before;
   const double dt = problem.dt, time = d.time + dt;
   const auto x = positions(d);
-  const Suspension suspension = freeze(s, d, x, motions(d));
+  const Suspension suspension = freeze(s, d, d.time, x, motions(d));
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity);
   Attempt<SuspensionSolve> result = solve(s, suspension, dt, r, motions(d), frames(d));
   if (!result) return result.rejection();
@@ -46,9 +46,9 @@ Attempt<Advance> block_scheme(const StepProblem& problem,
   const Dynamics& d = problem.before;
   const double dt = problem.dt;
   const auto x = positions(d);
-  const Suspension suspension = freeze(s, d, x, motions(d));
+  const Suspension suspension = freeze(s, d, d.time, x, motions(d));
   std::vector<Coefficients> r = suspension_forcing(suspension, problem.flows, d.time + dt, s.scene.buoyancy.gravity);
-  if (x.size() > 1) {
+  if (!suspension.interaction.none()) {
     std::vector<Coefficients> tension;
     for (std::size_t k = 0; k < x.size(); ++k)
       tension.push_back(implicit_force(suspension.membranes[k], 0, d.vesicles[k].motion));

@@ -1,7 +1,5 @@
 #include "sim/stepping/simulate.h"
 
-#include "sim/stepping/resolution.h"
-
 #include <fmt/format.h>
 
 #include <chrono>
@@ -243,6 +241,7 @@ class Run {
     if (observer_.on_warning)
       for (const std::string& warning : header.warnings) observer_.on_warning(warning);
     for (std::size_t k = 0; k < d_.vesicles.size(); ++k) d_.vesicles[k].warned = unresolved(model_, d_, k);
+    for (const ThinFilm& film : thin_films(model_, d_)) d_.vesicles[film.vesicle].warned = true;
     const State first = evaluate(model_, d_).value();
     expect(model_, d_, first);
     start_steps(model_, d_);
@@ -325,6 +324,10 @@ class Run {
         v.warned = true;
         warn(fmt::format("t = {:.6g}: {}", d_.time, resolution_warning(model_, d_, k)));
       }
+    if (d_.step % 10 != 0) return;  // a film thins slowly
+    std::vector<ThinFilm> films = thin_films(model_, d_);
+    std::erase_if(films, [&](const ThinFilm& film) { return std::exchange(d_.vesicles[film.vesicle].warned, true); });
+    if (!films.empty()) warn(fmt::format("t = {:.6g}: {}", d_.time, film_warning(d_, films.front(), films.size() - 1)));
   }
 
   /// Once a vesicle and run, too; of many at once the worst is named.

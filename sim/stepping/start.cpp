@@ -1,6 +1,7 @@
 #include "sim/stepping/start.h"
 
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 #include "sim/membrane/sliding.h"
 #include "sim/sphere/norms.h"
 #include "sim/surface/dealias.h"
@@ -135,6 +136,27 @@ Coefficients starting_position(const Scene& scene, VesicleParameters v, int orde
   return v.order == x.order ? x : initial_position(v);
 }
 
+/// A scene that has a cell may have it, and no vesicle is thicker than the cell: looking for where it meets its images
+/// would take for ever.
+void check_cell(const Model& s, const Dynamics& d) {
+  if (const auto objection = cell_objection(s.scene)) throw std::invalid_argument(objection->reason);
+  if (!s.scene.cell.size) return;
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
+    const VesicleDynamics& v = d.vesicles[k];
+    const Basis& basis = s.plans.basis(v.position.order, measure_order(v.position.order));
+    const Matrix points = basis.synthesize(v.position).values;
+    const Vec3 extent = (points.colwise().maxCoeff() - points.colwise().minCoeff()).transpose();
+    for (int a = 0; a < 3; ++a) {
+      // The mean chord along an axis: some chord is as long, and its ends overlap if the cell is shorter.
+      const double thickness = v.volume / (extent[(a + 1) % 3] * extent[(a + 2) % 3]);
+      if (thickness > (*s.scene.cell.size)[a])
+        throw std::invalid_argument(
+            fmt::format("vesicle {} and its own image overlap: it is at least {:.3g} thick along {}, the cell {:.3g}",
+                        k, thickness, "xyz"[a], (*s.scene.cell.size)[a]));
+    }
+  }
+}
+
 }  // namespace
 
 Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
@@ -164,12 +186,12 @@ Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
     start_anew(s, 0, 0, v);
     d.vesicles.push_back(std::move(v));
   }
-  const Gap gap = smallest_gap(s.plans, positions(d));
-  if (gap.crossing) throw std::invalid_argument(fmt::format("vesicles {} and {} overlap", gap.first, gap.second));
+  check_cell(s, d);
+  const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, 0));
+  if (gap.crossing) throw std::invalid_argument(pair_name(gap) + " overlap");
   if (gap.distance < gap_floor(s, d))
-    throw std::invalid_argument(
-        fmt::format("vesicles {} and {} are {:.3g} apart, less than numerics.gap_floor = {:.3g}", gap.first, gap.second,
-                    gap.distance, gap_floor(s, d)));
+    throw std::invalid_argument(fmt::format("{} are {:.3g} apart, less than numerics.gap_floor = {:.3g}",
+                                            pair_name(gap), gap.distance, gap_floor(s, d)));
   start_steps(s, d);
   if (std::isfinite(gap.distance)) d.control.gap = gap.distance;
   if (scheme_name(s.scene) == "explicit")

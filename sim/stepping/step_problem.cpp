@@ -1,5 +1,7 @@
 #include "sim/stepping/step_problem.h"
 
+#include "sim/membrane/cell.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -45,10 +47,11 @@ double gap_floor(const Model& s, const Dynamics& d) {
   return s.scene.numerics.gap_floor.value_or(default_gap_floor * smallest_radius(sizes(d)));
 }
 
-Suspension freeze(const Model& s, const Dynamics& d, std::span<const Coefficients> frozen,
+Suspension freeze(const Model& s, const Dynamics& d, double time, std::span<const Coefficients> frozen,
                   std::span<const Motion> likely) {
   const NumericsParameters& n = s.scene.numerics;
-  const SuspensionOptions options = suspension_options(n, smallest_radius(sizes(d)), solve_tolerance(s.scene));
+  const SuspensionOptions options =
+      suspension_options(n, smallest_radius(sizes(d)), solve_tolerance(s.scene), cell_at(s.scene, time));
   std::vector<Coefficients> expected;
   if (n.implicit_tension)
     for (const Motion& m : likely) expected.push_back(m.tension);

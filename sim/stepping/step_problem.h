@@ -52,9 +52,9 @@ Rejection not_converged(double residual, int iterations);
 /// vesicle.
 double gap_floor(const Model&, const Dynamics&);
 
-/// Operators at frozen positions with everything that the scene says of them, and the tensions that are expected there.
-/// Throws std::domain_error where vesicles cross.
-Suspension freeze(const Model&, const Dynamics&, std::span<const Coefficients> positions,
+/// Operators at frozen positions with everything that the scene says of them, and the tensions that are expected there;
+/// a periodic cell is that of the time. Throws std::domain_error where vesicles cross.
+Suspension freeze(const Model&, const Dynamics&, double time, std::span<const Coefficients> positions,
                   std::span<const Motion> expected);
 
 /// Solves for the motions at frozen positions, relative to those of the frames.

@@ -2,6 +2,7 @@
 
 #include "sim/core/parallel.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/membrane/cell.h"
 #include "sim/sphere/norms.h"
 #include "sim/surface/dealias.h"
 #include "sim/suspension/gap.h"
@@ -173,7 +174,7 @@ std::optional<Rejection> finish_vesicles(const Model& s, Step& step, Advance& ad
 /// Of a step that leads two vesicles into each other. Where they were all but there before, shorter steps only take
 /// longer: the film between them is thinner than their degrees resolve.
 Rejection too_close(const Model& s, const Dynamics& before, const Gap& gap) {
-  const std::string pair = fmt::format("vesicles {} and {}", gap.first, gap.second);
+  const std::string pair = pair_name(gap);
   const double floor = gap_floor(s, before), last = before.control.gap;
   constexpr double all_but_there = 1.5;
   if (last > 0 && last < all_but_there * floor)
@@ -201,7 +202,7 @@ Attempt<Step> take_step(const Model& s, const Dynamics& before, double dt) {
   d.time = before.time + dt;
   d.step = before.step + 1;
   if (auto rejection = finish_vesicles(s, step, *advance, dt)) return *rejection;
-  const Gap gap = smallest_gap(s.plans, positions(d));
+  const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, d.time));
   if (gap.crossing || gap.distance < gap_floor(s, d)) return too_close(s, before, gap);
   if (std::isfinite(gap.distance)) d.control.gap = gap.distance;
   record.step = double(d.step);

@@ -1,8 +1,13 @@
 #include "sim/stepping/warnings.h"
 
 #include "sim/core/digits.h"
+#include "sim/membrane/cell.h"
+#include "sim/suspension/gap.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace sim {
 
@@ -48,6 +53,61 @@ std::string limit_warning(const Model& s, const Dynamics& d, std::size_t k, doub
 
 namespace {
 
+constexpr double told_share = 0.25;  ///< error of a gap, over the gap, from which it is no more known
+
+/// The least degree that resolves a gap, in area radii.
+int degree_for(double gap) {
+  int degree = 1;
+  while (film_error(degree, gap) > told_share * gap) ++degree;
+  return degree;
+}
+
+/// The least gap, in area radii, that a degree resolves.
+double least_gap(int degree) {
+  double low = 0, high = 1;
+  for (int k = 0; k < 40; ++k) {
+    const double gap = (low + high) / 2;
+    (film_error(degree, gap) > told_share * gap ? low : high) = gap;
+  }
+  return high;
+}
+
+}  // namespace
+
+std::vector<ThinFilm> thin_films(const Model& s, const Dynamics& d) {
+  std::vector<ThinFilm> films;
+  if (steps_adapt(s.scene.time) || !(d.control.gap > 0)) return films;
+  const auto film_of = [&](std::size_t k, double distance) {
+    const VesicleDynamics& v = d.vesicles[k];
+    const double gap = distance / area_radius({v.area, v.volume});
+    return ThinFilm{k, gap, film_error(v.position.order, gap)};
+  };
+  const auto thin = [](const ThinFilm& film) { return film.error > told_share * film.gap; };
+  double reach = 0;
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k)
+    if (const ThinFilm film = film_of(k, d.control.gap); thin(film)) reach = std::max(reach, d.control.gap / film.gap);
+  if (reach == 0) return films;
+  const std::vector<double> gaps = gaps_to_neighbours(s.plans, positions(d), reach, cell_at(s.scene, d.time));
+  for (std::size_t k = 0; k < gaps.size(); ++k)
+    if (const ThinFilm film = film_of(k, gaps[k]); thin(film)) films.push_back(film);
+  std::stable_sort(films.begin(), films.end(),
+                   [](const ThinFilm& a, const ThinFilm& b) { return a.error / a.gap > b.error / b.gap; });
+  return films;
+}
+
+std::string film_warning(const Dynamics& d, const ThinFilm& film, std::size_t others) {
+  constexpr int far_too_many = 32;
+  const std::string more = others == 0 ? "" : fmt::format(" (and {} more)", others);
+  const int order = d.vesicles[film.vesicle].position.order, needed = degree_for(film.gap);
+  return fmt::format(
+      "vesicle {}{}: the nearest neighbour is {:.2g} area radii away, and order {} tells gaps from {:.2g} on: how they "
+      "touch is the truncation's; {}",
+      film.vesicle, more, film.gap, order, least_gap(order),
+      needed > far_too_many ? "begin farther apart" : fmt::format("try order {}", needed));
+}
+
+namespace {
+
 /// The table of the scene that a flow stands in, and the keys that give it a strength.
 std::string still_flow_warning(const Scene& scene, std::size_t k) {
   const FlowParameters& flow = scene.flows[k];
@@ -76,6 +136,8 @@ std::vector<std::string> scene_warnings(const Model& s, const Dynamics& d) {
                       step / (20 * longest), step, longest));
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
     if (unresolved(s, d, k)) warnings.push_back(resolution_warning(s, d, k));
+  if (const auto films = thin_films(s, d); !films.empty())
+    warnings.push_back(film_warning(d, films.front(), films.size() - 1));
   return warnings;
 }
 

@@ -110,10 +110,86 @@ Rates rates_of(const FastSetting& s, bool dual) {
           (dual ? 3.2e-9 : 1.9e-9) * squares + 0.1e-6, 1.7e-9 * squares + 0.1e-6};
 }
 
+/// As Neighbourhood does, where surfaces fill a periodic cell evenly.
+class EvenNeighbourhood {
+ public:
+  EvenNeighbourhood(std::span<const Sources> surfaces, const Eigen::Matrix3d& cell)
+      : density_(double(surfaces.size()) / std::abs(cell.determinant())) {
+    for (const Sources& s : surfaces) reach_ = std::max(reach_, (s.box.high - s.box.low).norm() / 2);
+  }
+  double count(double r, double finely, double fine, double coarse) const {
+    const double near = std::min(r, finely + reach_);
+    return density_ * 4 * std::numbers::pi / 3 * (std::pow(near, 3) * (fine - coarse) + std::pow(r, 3) * coarse);
+  }
+
+ private:
+  double density_, reach_ = 0;
+};
+
+/// The cheapest cut-off and grid. `nodes_of`: nodes of the transforms, by the cut-off; `octaves`: how far beyond
+/// the least cut-off to look.
+template <class Neighbours, class Nodes>
+FastChoice cheapest(std::span<const int> orders, std::span<const Sources> coarse, double fine_points, bool dual,
+                    const FarOptions& options, const FastSetting& setting, const Neighbours& near,
+                    const Nodes& nodes_of, double octaves) {
+  const auto n = coarse.size();
+  const Rates rates = rates_of(setting, dual);
+  double targets = 0;
+  for (const Sources& s : coarse) targets += double(s.area.size());
+  const double transforms = dual ? 7 : 6;
+  FastChoice best{setting, 0, std::numeric_limits<double>::infinity()};
+  for (const int finer : {0, 1, 2}) {
+    const double kh = largest_kh(finer, options.tolerance, dual);
+    if (kh <= 0) continue;
+    double spread = 0, spacing = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double s = spread_order(orders[i], finer);
+      spread += 2 * (s + 1) * (s + 1);
+      spacing = std::max(spacing, coarse[i].spacing.maxCoeff() * (orders[i] + 2) / (s + 1));
+    }
+    const double least = setting.wave_number * spacing / (std::numbers::pi * kh);
+    for (int step = 0; step < 8 * octaves; ++step) {
+      const double cutoff = least * std::exp2(step / 8.0);
+      const double pairs = targets * near.count(cutoff, coarse_limit(options.tolerance) * spacing,
+                                                fine_points / double(n), spread / double(n));
+      constexpr double lanes_within = 0.5;  // of those evaluated
+      const double nodes = nodes_of(cutoff);
+      const double seconds = (pairs / lanes_within + targets * spread / double(n)) * rates.pair +
+                             nodes * transforms * rates.node + spread * rates.spread + targets * rates.read;
+      constexpr double most_nodes = 1e9;  // 6 GB a channel
+      if (nodes < most_nodes && seconds < best.seconds) {
+        best.finer = finer;
+        best.setting.cutoff = cutoff;
+        best.seconds = seconds;
+      }
+    }
+  }
+  return best;
+}
+
+FastChoice choose_periodic(std::span<const int> orders, std::span<const Sources> coarse, std::span<const Sources> fine,
+                           bool dual, const FarOptions& options) {
+  FastSetting setting = fast_setting(options.tolerance, dual);
+  setting.cell = options.cell;
+  double fine_points = 0, largest = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    fine_points += double(fine[i].area.size());
+    largest = std::max(largest, coarse[i].spacing.maxCoeff());
+  }
+  const double node = Mesh::spacing(setting.wave_number, setting.oversampling);
+  const Vec3 sides = options.cell->colwise().norm().transpose();
+  // A cut-off beyond the whole cell leaves a mesh of a few nodes.
+  const double octaves = 4 + std::max(0.0, std::log2(sides.maxCoeff() / largest));
+  return cheapest(
+      orders, coarse, fine_points, dual, options, setting, EvenNeighbourhood(coarse, *options.cell),
+      [&](double cutoff) { return (sides / cutoff / node).cwiseMax(setting.window + 1).prod(); }, octaves);
+}
+
 }  // namespace
 
 std::optional<FastChoice> choose_fast(std::span<const int> orders, std::span<const Sources> coarse,
                                       std::span<const Sources> fine, bool dual, const FarOptions& options) {
+  if (options.cell) return choose_periodic(orders, coarse, fine, dual, options);
   if (options.method == "direct") return std::nullopt;
   const auto n = coarse.size();
   double targets = 0, fine_points = 0, largest = 0;
@@ -133,34 +209,13 @@ std::optional<FastChoice> choose_fast(std::span<const int> orders, std::span<con
   constexpr double everywhere = 1e300, coarse_from = 6;  // spacings: as InteractionOptions has it
   direct += targets * near.count(everywhere, coarse_from * largest, (fine_points - targets) / double(n), 0) *
             rates.direct_pair;
-  const double node = Mesh::spacing(setting.wave_number, setting.oversampling), transforms = dual ? 7 : 6;
-  FastChoice best{setting, 0, std::numeric_limits<double>::infinity()};
-  for (const int finer : {0, 1, 2}) {
-    const double kh = largest_kh(finer, options.tolerance, dual);
-    if (kh <= 0) continue;
-    double spread = 0, spacing = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double s = spread_order(orders[i], finer);
-      spread += 2 * (s + 1) * (s + 1);
-      spacing = std::max(spacing, coarse[i].spacing.maxCoeff() * (orders[i] + 2) / (s + 1));
-    }
-    const double least = setting.wave_number * spacing / (std::numbers::pi * kh);
-    for (int step = 0; step < 32; ++step) {
-      const double cutoff = least * std::exp2(step / 8.0);
-      const double pairs = targets * near.count(cutoff, coarse_limit(options.tolerance) * spacing,
-                                                fine_points / double(n), spread / double(n));
-      constexpr double lanes_within = 0.5;  // of those evaluated
-      const double nodes = Mesh::padded_nodes(Mesh::nodes_for((all.high - all.low) / cutoff, node, setting.window));
-      const double seconds = (pairs / lanes_within + targets * spread / double(n)) * rates.pair +
-                             nodes * transforms * rates.node + spread * rates.spread + targets * rates.read;
-      constexpr double most_nodes = 1e9;  // 6 GB a channel
-      if (nodes < most_nodes && seconds < best.seconds) {
-        best.finer = finer;
-        best.setting.cutoff = cutoff;
-        best.seconds = seconds;
-      }
-    }
-  }
+  const double node = Mesh::spacing(setting.wave_number, setting.oversampling);
+  const FastChoice best = cheapest(
+      orders, coarse, fine_points, dual, options, setting, near,
+      [&](double cutoff) {
+        return Mesh::padded_nodes(Mesh::nodes_for((all.high - all.low) / cutoff, node, setting.window));
+      },
+      4);
   if (!std::isfinite(best.seconds)) return std::nullopt;
   if (options.method == "auto" && best.seconds > direct) return std::nullopt;
   return best;

@@ -12,6 +12,7 @@ namespace sim {
 struct FarOptions {
   std::string method = "auto";  ///< as numerics.far_field
   double tolerance = 1e-6;      ///< relative error of the velocities
+  CellSides cell = {};          ///< periodic: always fast
 };
 
 /// How the fast sum is made: its setting, and the grids from which vesicles are spread on the mesh.

@@ -3,6 +3,9 @@
 #include "sim/core/parallel.h"
 #include "sim/layers/far_field.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -92,10 +95,17 @@ Approach nearest_approach(const Coefficients& x, const Coefficients& y, Approach
 
 /// A surface with the source grid on which gaps are looked for.
 struct Surface {
-  const Coefficients& position;
+  Coefficients position;
   const Basis& basis;
   Sources sources;
 };
+
+Surface moved(Surface s, const Vec3& shift) {
+  s.position.values.row(0) += std::sqrt(4 * std::numbers::pi) * shift.transpose();
+  s.sources.points.rowwise() += shift.transpose();
+  s.sources.box = {s.sources.box.low + shift, s.sources.box.high + shift};
+  return s;
+}
 
 /// The nearest pair of source points, where it is nearer than `best`.
 struct NearestSources {
@@ -146,13 +156,15 @@ Gap gap_between(const Surface& a, const Surface& b, int first, int second) {
 struct Search {
   std::vector<std::optional<Surface>> surfaces;
   std::vector<Box> boxes;
+  CellSides cell;
   double spacing = 0;  ///< largest of the source grids
-  double extent = 0;   ///< diagonal of what holds them all
+  double extent = 0;   ///< some two membranes, or all, are no farther apart
 };
 
-Search search_among(Plans& plans, std::span<const Coefficients> positions) {
+Search search_among(Plans& plans, std::span<const Coefficients> positions, const CellSides& cell) {
   const int n = int(positions.size());
   Search search;
+  search.cell = cell;
   search.surfaces.resize(n);
   parallel_for(n, [&](int i) {
     const Basis& basis = plans.basis(positions[i].order, smooth_order(positions[i].order));
@@ -164,39 +176,48 @@ Search search_among(Plans& plans, std::span<const Coefficients> positions) {
     all = united(all, search.boxes.back());
     search.spacing = std::max(search.spacing, surface->sources.spacing.maxCoeff());
   }
-  search.extent = (all.high - all.low).norm();
+  search.extent = cell ? cell->colwise().norm().minCoeff() : (all.high - all.low).norm();
   return search;
 }
 
 /// Of all pairs whose boxes are no farther apart than `reach`.
 std::vector<Gap> gaps_of_pairs(const Search& search, double reach) {
-  const auto pairs = near_pairs(search.boxes, reach);
+  const auto pairs = near_images(search.boxes, reach, search.cell);
   std::vector<Gap> gaps(pairs.size());
   parallel_for(int(pairs.size()), [&](int k) {
-    const auto [i, j] = pairs[k];
-    gaps[k] = gap_between(*search.surfaces[j], *search.surfaces[i], i, j);
+    const ImagePair& pair = pairs[k];
+    const Surface &first = *search.surfaces[pair.first], &second = *search.surfaces[pair.second];
+    gaps[k] = pair.image.isZero() ? gap_between(second, first, pair.first, pair.second)
+                                  : gap_between(moved(second, pair.shift(search.cell)), first, pair.first, pair.second);
   });
   return gaps;
 }
 
 }  // namespace
 
-Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions) {
+std::string pair_name(const Gap& gap) {
+  return gap.first == gap.second ? fmt::format("vesicle {} and its own image", gap.first)
+                                 : fmt::format("vesicles {} and {}", gap.first, gap.second);
+}
+
+Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions, const CellSides& cell) {
   Gap best{std::numeric_limits<double>::infinity(), -1, -1, false};
-  if (positions.size() < 2) return best;
-  const Search search = search_among(plans, positions);
+  if (positions.empty() || (positions.size() < 2 && !cell)) return best;
+  const Search search = search_among(plans, positions, cell);
   // Pairs whose boxes are farther apart than the least gap found so far cannot have a smaller one.
   for (double reach = search.spacing;; reach *= 4) {
-    for (const Gap& gap : gaps_of_pairs(search, reach))
+    const bool last = reach > search.extent;
+    for (const Gap& gap : gaps_of_pairs(search, search.cell ? std::min(reach, search.extent) : reach))
       if (gap.distance < best.distance) best = gap;
-    if (best.distance <= reach || reach > search.extent) return best;
+    if (best.distance <= reach || last) return best;
   }
 }
 
-std::vector<double> gaps_to_neighbours(Plans& plans, std::span<const Coefficients> positions, double reach) {
+std::vector<double> gaps_to_neighbours(Plans& plans, std::span<const Coefficients> positions, double reach,
+                                       const CellSides& cell) {
   std::vector<double> least(positions.size(), std::numeric_limits<double>::infinity());
-  if (positions.size() < 2) return least;
-  for (const Gap& gap : gaps_of_pairs(search_among(plans, positions), reach))
+  if (positions.size() < 2 && !cell) return least;
+  for (const Gap& gap : gaps_of_pairs(search_among(plans, positions, cell), reach))
     for (const int k : {gap.first, gap.second}) least[k] = std::min(least[k], gap.distance);
   return least;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 namespace sim {
 
@@ -29,14 +30,22 @@ std::vector<PairPlan> candidates(const Interaction& w, const InteractionOptions&
                        : options.coarse_spacings > 0 ? options.coarse_spacings * coarse_spacing
                                                      : (all.high - all.low).norm();
   std::vector<PairPlan> pairs;
-  for (const auto& [i, j] : near_pairs(boxes, reach)) {
-    pairs.push_back({i, j, {}, {}, {}, {}});
-    pairs.push_back({j, i, {}, {}, {}, {}});
+  for (const ImagePair& p : near_images(boxes, reach, options.far.cell)) {
+    const Vec3 shift = p.shift(options.far.cell);
+    pairs.push_back({p.first, p.second, p.image, shift, {}, {}, {}, {}});
+    pairs.push_back({p.second, p.first, -p.image, -shift, {}, {}, {}, {}});
   }
-  std::sort(pairs.begin(), pairs.end(), [](const PairPlan& a, const PairPlan& b) {
-    return std::pair(a.target, a.source) < std::pair(b.target, b.source);
-  });
+  const auto key = [](const PairPlan& p) { return std::tuple(p.target, p.source, p.image[0], p.image[1], p.image[2]); };
+  std::sort(pairs.begin(), pairs.end(), [&](const PairPlan& a, const PairPlan& b) { return key(a) < key(b); });
   return pairs;
+}
+
+NearOrder near_order(const InteractionOptions& options, int degree) {
+  constexpr double finest = 1e-6;  // the least tolerance of a run
+  NearOrder order = near_order_for(degree, std::max(options.far.tolerance, finest));
+  if (options.near_order.latitudes > 0) order.latitudes = options.near_order.latitudes;
+  if (options.near_order.longitudes > 0) order.longitudes = options.near_order.longitudes;
+  return order;
 }
 
 /// Sorts the targets of a pair: those that need the fine grid, and those that need rows.
@@ -48,17 +57,21 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
   const double reach = options.near_spacings * s.spacing.maxCoeff();
   const double coarse_reach = options.coarse_spacings * (*w.far.sources)[j].spacing.maxCoeff();
   for (int k = 0; k < int(targets.rows()); ++k) {
-    const Vec3 x = targets.row(k).transpose();
+    const Vec3 x = targets.row(k).transpose() - pair.shift;  // the image as seen from where its vesicle is
     const double to_box = distance(s.box, x);
     if (only_near ? to_box >= reach : coarse_reach > 0 && to_box >= coarse_reach) continue;
     if (options.near_rule && to_box < reach) {
       const auto [source, away] = nearest_source(s, x);
       if (away < (options.near_spacings + 1) * s.spacing[source]) {
-        const NearestPoint nearest = nearest_point(positions[j], x, grid_direction(*w.source_basis[j], source));
-        if (nearest.inside) throw std::domain_error(fmt::format("vesicle {} crosses vesicle {}", pair.target, j));
+        NearestPoint nearest = nearest_point(positions[j], x, grid_direction(*w.source_basis[j], source));
+        if (nearest.inside)
+          throw std::domain_error(pair.target == j ? fmt::format("vesicle {} crosses its own image", j)
+                                                   : fmt::format("vesicle {} crosses vesicle {}", pair.target, j));
         if (nearest.distance < options.near_spacings * s.spacing[source]) {
           pair.near.push_back(k);
-          pair.rows.push_back(near_row(rotation, positions[j], x, nearest, options.near_order, w.dual[j]));
+          pair.rows.push_back(
+              near_row(rotation, positions[j], x, nearest, near_order(options, positions[j].order), w.dual[j]));
+          nearest.position += pair.shift;
           pair.nearest.push_back(nearest);
           continue;
         }
@@ -72,7 +85,7 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
 std::vector<Exclusion> exclusions(const std::vector<PairPlan>& pairs) {
   std::vector<Exclusion> all;
   for (const PairPlan& pair : pairs) {
-    Exclusion e{pair.target, pair.source, {}};
+    Exclusion e{pair.target, pair.source, {}, pair.image};
     std::merge(pair.fine.begin(), pair.fine.end(), pair.near.begin(), pair.near.end(), std::back_inserter(e.targets));
     all.push_back(std::move(e));
   }
@@ -125,7 +138,7 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
                              const InteractionOptions& options) {
   Interaction w;
   const int n = int(positions.size());
-  if (n < 2) return w;
+  if (n == 0 || (n < 2 && !options.far.cell)) return w;
   std::vector<const RotationPlan*> rotations;
   for (int i = 0; i < n; ++i) {
     const int p = positions[i].order;

@@ -17,17 +17,19 @@ namespace sim {
 struct InteractionOptions {
   int source_order = 0;  ///< q of the smooth rule; 0: p^(3/2), rounded up
   bool near_rule = true;
-  NearOrder near_order;
+  NearOrder near_order{0, 0};  ///< 0: near_order_for() the tolerance of the far field
   double near_spacings = 4;    ///< targets nearer than this many local spacings use the near rule
   double coarse_spacings = 6;  ///< targets farther than this many spacings of the coarse grid use that grid; 0: none
   FarOptions far = {};
 };
 
 /// What one vesicle makes at those targets of another that are excluded from the far field: by the smooth rule on its
-/// fine grid (where the far field is summed directly), or by rows, with the nearest point of the source for each of
+/// fine grid (where the far field is summed directly), or by rows, with the nearest point of the image for each of
 /// these.
 struct PairPlan {
   int target = 0, source = 0;
+  Eigen::Vector3i image = Eigen::Vector3i::Zero();  ///< of the source, in sides of the cell
+  Vec3 shift = Vec3::Zero();                        ///< of that image
   std::vector<int> fine, near;
   std::vector<PointRow> rows;
   std::vector<NearestPoint> nearest;
@@ -49,13 +51,14 @@ struct Interaction {
   std::vector<Sources> sources;                 ///< on the fine grids
   std::vector<PairPlan> pairs;                  ///< by target, then source
   std::vector<char> dual;                       ///< per source vesicle: its viscosity contrast differs from 1
+  bool none() const { return sources.empty(); }
 };
 
-/// Throws std::domain_error when a target lies inside another vesicle.
+/// None for a single vesicle in unbounded fluid. Throws std::domain_error when a target lies inside another vesicle.
 Interaction plan_interaction(Plans&, std::span<const Coefficients> positions, std::span<const Material>,
                              const InteractionOptions&);
 
-/// Velocity that all other vesicles induce on each, projected on its degree.
+/// Velocity that all other vesicles, and in a periodic cell all images, induce on each, projected on its degree.
 std::vector<Coefficients> induced_velocity(const Interaction&, std::span<const Densities>);
 
 /// Optional short-range repulsion: traction strength exp(-gap/range) on the points of each vesicle that are near

@@ -1,6 +1,7 @@
 #include "sim/suspension/loads.h"
 
 #include "sim/core/parallel.h"
+#include "sim/membrane/cell.h"
 #include "sim/surface/dealias.h"
 
 #include <limits>
@@ -30,7 +31,7 @@ Bodies bodies_of(Plans& plans, const Scene& scene, const State& state) {
     b.upsamplings.push_back(n.upsampling > 0 ? n.upsampling : upsampling_rate(plans, x, n.aliasing_tolerance));
   }
   b.pinned = pinned_tensions(plans, scene.flows, scene.buoyancy.gravity, b.materials, b.positions, sizes);
-  b.options = suspension_options(n, smallest_radius(sizes), 1e-7);
+  b.options = suspension_options(n, smallest_radius(sizes), 1e-7, cell_at(scene, state.time));
   return b;
 }
 
@@ -46,7 +47,7 @@ std::vector<Load> loads_of(Plans& plans, const Scene& scene, const State& state,
   const Bodies b = bodies_of(plans, scene, state);
   const auto n = static_cast<int>(b.positions.size());
   std::vector<Coefficients> repelled;
-  if (n > 1 && b.options.repulsion_strength > 0)
+  if (b.options.repulsion_strength > 0)
     repelled = repulsion(plan_interaction(plans, b.positions, b.materials, b.options.interaction),
                          b.options.repulsion_strength, b.options.repulsion_range);
   std::vector<Load> loads(n);
@@ -70,19 +71,20 @@ std::vector<Load> solved_loads(Plans& plans, const Scene& scene, const State& st
   std::vector<Motion> motions;
   for (const VesicleState& v : state.vesicles) motions.push_back({v.velocity, v.tension});
   std::vector<char> converged(n, 1);
+  const bool others_act = !s.interaction.none();
   constexpr double residual = 1e-8;
   // Vesicle by vesicle, with what the others do as known from the sweep before: what is wrong with a saved state is
   // mostly its own, and coupled solves sum over all pairs in each iteration.
-  for (int sweep = 0; sweep < (n > 1 ? 3 : 1); ++sweep) {
+  for (int sweep = 0; sweep < (others_act ? 3 : 1); ++sweep) {
     std::vector<Coefficients> forces(n), others;
     for (int i = 0; i < n; ++i) forces[i] = moving_force(s.membranes[i], motions[i]);
-    if (n > 1) others = interaction_of(s, forces, motions);
+    if (others_act) others = interaction_of(s, forces, motions);
     parallel_for(n, [&](int i) {
       const Membrane& m = s.membranes[i];
       // The rigid motion solves the homogeneous equations for itself.
       const Matrix rigid = rigid_velocity(m.body, rigid_part(m.body, motions[i].velocity)).values;
       Coefficients forcing{m.order(), r[i].values - rigid};
-      if (n > 1) forcing.values += others[i].values;
+      if (others_act) forcing.values += others[i].values;
       Motion guess = motions[i];
       guess.velocity.values -= rigid;
       Solve solve = solve_system(m, 0, forcing, guess, residual);

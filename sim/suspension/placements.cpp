@@ -32,68 +32,102 @@ Vec3 random_direction(std::mt19937_64& random) {
 struct Extent {
   double volume, reach, core;
   double radius;  ///< of the sphere of the same area
+  Vec3 size;      ///< of the box about it
 };
 Extent extent(const VesicleParameters& v) {
   VesicleParameters centred = v;
   centred.center.setZero();
   const Coefficients x = initial_position(centred);
   const Basis basis(x.order, 2 * x.order + 8);
-  const Vector distance = basis.synthesize(x).values.rowwise().norm();
+  const Matrix points = basis.synthesize(x).values;
+  const Vector distance = points.rowwise().norm();
   const AreaVolume size = area_volume(basis, x);
-  return {size.volume, distance.maxCoeff(), distance.minCoeff(), std::sqrt(size.area / (4 * pi))};
+  return {size.volume, distance.maxCoeff(), distance.minCoeff(), std::sqrt(size.area / (4 * pi)),
+          (points.colwise().maxCoeff() - points.colwise().minCoeff()).transpose()};
 }
 
 double gap_of(const PlacementParameters& p, const Extent& e) {
   return p.gap.value_or(default_placement_gap * e.radius);
 }
 
-/// Positions that have been taken, and whether another one keeps its distance from all of them.
+/// Positions that have been taken, and whether another one keeps its distance from all of them and from all images.
 struct Occupied {
   double gap;
   Extent extent;
+  std::optional<Vec3> cell;
   std::vector<Vec3> centers;
   std::vector<Coefficients> surfaces;
   Plans plans;
 
   bool free(const Vec3& center, const Coefficients& x) {
-    for (std::size_t k = 0; k < centers.size(); ++k) {
-      const double apart = (centers[k] - center).norm();
-      if (apart > 2 * extent.reach + gap) continue;
-      if (apart < 2 * extent.core) return false;
-      const Gap g = smallest_gap(plans, std::vector{surfaces[k], x});
-      if (g.crossing || g.distance < gap) return false;
-    }
+    for (std::size_t k = 0; k < centers.size(); ++k)
+      for (const Vec3& shift : images(centers[k] - center, false))
+        if (!apart(centers[k] + shift - center, moved(surfaces[k], shift), x)) return false;
+    for (const Vec3& shift : images(Vec3::Zero(), true))
+      if (!apart(shift, moved(x, shift), x)) return false;
     return true;
+  }
+
+ private:
+  static Coefficients moved(Coefficients x, const Vec3& shift) {
+    x.values.row(0) += std::sqrt(4 * pi) * shift.transpose();
+    return x;
+  }
+  double near() const { return 2 * extent.reach + gap; }
+  bool apart(const Vec3& from_centre_to_centre, const Coefficients& first, const Coefficients& second) {
+    const double distance = from_centre_to_centre.norm();
+    if (distance > near()) return true;
+    if (distance < 2 * extent.core) return false;
+    const Gap g = smallest_gap(plans, std::vector{first, second});
+    return !g.crossing && g.distance >= gap;
+  }
+  /// Of the images of what lies so far away, the shifts of those that may be near; of the place itself, all but itself.
+  std::vector<Vec3> images(const Vec3& away, bool own) const {
+    if (!cell) return own ? std::vector<Vec3>{} : std::vector<Vec3>{Vec3::Zero()};
+    const Vec3 number = -(away.array() / cell->array()).round();
+    const Eigen::Vector3i most = (near() / cell->array()).ceil().matrix().cast<int>();
+    std::vector<Vec3> all;
+    for (int a = -most[0]; a <= most[0]; ++a)
+      for (int b = -most[1]; b <= most[1]; ++b)
+        for (int c = -most[2]; c <= most[2]; ++c) {
+          const Vec3 shift = (number + Vec3(a, b, c)).cwiseProduct(*cell);
+          if ((away + shift).norm() <= near() && !(own && a == 0 && b == 0 && c == 0)) all.push_back(shift);
+        }
+    return all;
   }
 };
 
+/// The volume fraction: of a cell that is to be filled, that of its own volume.
+double fraction_of(const PlacementParameters& p, const Extent& e, const std::optional<Vec3>& cell) {
+  return cell ? p.count * e.volume / cell->prod() : p.volume_fraction;
+}
+
 /// Refuses what cannot be placed at random in a room (the region of the centres, and what reaches beyond it).
-void require_room(const PlacementParameters& p, const Extent& e, double room) {
+void require_room(const PlacementParameters& p, const Extent& e, double room, const std::optional<Vec3>& cell) {
   // Random insertion jams at shares of 0.38 (spheres) to 0.45 (ellipsoids). Each counts with half the gap about it.
   constexpr double fullest = 0.5;
   const double gap = gap_of(p, e), equivalent = std::cbrt(3 * e.volume / (4 * pi));
   const double filled = p.count * 4 * pi / 3 * std::pow(equivalent + gap / 2, 3) / room;
   if (p.count > 1 && filled > fullest)
-    throw std::invalid_argument(
-        fmt::format("{} vesicles of radius {:.3g} with gaps of {:.3g} cannot be placed at random at a volume fraction "
-                    "of {}: with half the gap "
-                    "about each they would fill {:.0f} % of the room; give a smaller volume_fraction or gap",
-                    p.count, e.radius, gap, p.volume_fraction, 100 * filled));
+    throw std::invalid_argument(fmt::format(
+        "{} vesicles of radius {:.3g} with gaps of {:.3g} cannot be placed at random at a volume fraction of {:.3g}: "
+        "with half the gap about each they would fill {:.0f} % of the room; give a smaller {} or gap",
+        p.count, e.radius, gap, fraction_of(p, e, cell), 100 * filled, cell ? "count" : "volume_fraction"));
 }
 
 /// Copies at random points of a region, one after another, each free of those before.
 std::vector<VesicleParameters> insert_at_random(const PlacementParameters& p, const VesicleParameters& original,
-                                                const Extent& size, const StopQuestion& stop,
+                                                const Extent& size, const Room& room,
                                                 const std::function<Vec3(std::mt19937_64&)>& point) {
   std::mt19937_64 random(std::uint64_t(p.seed));
   const double gap = gap_of(p, size);
-  Occupied occupied{gap, size, {}, {}, {}};
+  Occupied occupied{gap, size, room.cell, {}, {}, {}};
   std::vector<VesicleParameters> all;
   constexpr int tries = 2000;
   while (int(all.size()) < p.count) {
     bool found = false;
     for (int attempt = 0; attempt < tries && !found; ++attempt) {
-      if (stop && stop())
+      if (room.stop && room.stop())
         throw std::system_error(std::make_error_code(std::errc::interrupted), "while vesicles were being placed");
       VesicleParameters v = original;
       v.center = p.center + point(random);
@@ -107,56 +141,80 @@ std::vector<VesicleParameters> insert_at_random(const PlacementParameters& p, co
     }
     if (!found)
       throw std::invalid_argument(
-          fmt::format("only {} of {} vesicles could be placed at a volume fraction of {} with gaps of {:.3g}",
-                      all.size(), p.count, p.volume_fraction, gap));
+          fmt::format("only {} of {} vesicles could be placed at a volume fraction of {:.3g} with gaps of {:.3g}",
+                      all.size(), p.count, fraction_of(p, size, room.cell), gap));
   }
   return all;
 }
 
+/// Numbers of places along the sides of a cell that leave each vesicle the most room for its size.
+Eigen::Vector3i places_in(const Vec3& cell, const Vec3& size, int count) {
+  Eigen::Vector3i best(count, 1, 1);
+  double most = 0;
+  for (int x = 1; x <= count; ++x)
+    for (int y = 1; x * y < count + std::max(x, y); ++y) {
+      const Eigen::Vector3i n(x, y, (count + x * y - 1) / (x * y));
+      const double room = (cell.array() / n.cast<double>().array() / size.array()).minCoeff();
+      if (room > most) {
+        most = room;
+        best = n;
+      }
+    }
+  return best;
+}
+
 std::vector<VesicleParameters> lattice(const PlacementParameters& p, const VesicleParameters& original,
-                                       const StopQuestion&) {
+                                       const Room& room) {
   const int side = int(std::ceil(std::cbrt(double(p.count)) - 1e-9));
-  const double spacing = std::cbrt(extent(original).volume / p.volume_fraction);
+  Eigen::Vector3i places = Eigen::Vector3i::Constant(side);
+  Vec3 spacing;
+  if (room.cell) {
+    const Extent e = extent(original);
+    places = places_in(*room.cell, p.orientation == "random" ? Vec3(Vec3::Constant(e.reach)) : e.size, p.count);
+    spacing = room.cell->cwiseQuotient(places.cast<double>());
+  } else {
+    spacing.setConstant(std::cbrt(extent(original).volume / p.volume_fraction));
+  }
   std::mt19937_64 random(std::uint64_t(p.seed));
   std::vector<VesicleParameters> all;
   for (int k = 0; k < p.count; ++k) {
     VesicleParameters v = original;
-    const Eigen::Vector3i cell(k % side, k / side % side, k / (side * side));
+    const Eigen::Vector3i cell(k % places[0], k / places[0] % places[1], k / (places[0] * places[1]));
     const Vec3 shift = Vec3(uniform(random), uniform(random), uniform(random)) - Vec3::Constant(0.5);
-    v.center = p.center + spacing * (cell.cast<double>() - Vec3::Constant((side - 1) / 2.0) + 2 * p.jitter * shift);
+    const Vec3 middle = (places.cast<double>() - Vec3::Ones()) / 2;
+    v.center = p.center + spacing.cwiseProduct(cell.cast<double>() - middle + 2 * p.jitter * shift);
     if (p.orientation == "random") v.axis = random_direction(random);
     all.push_back(std::move(v));
   }
   return all;
 }
 
-std::vector<VesicleParameters> box(const PlacementParameters& p, const VesicleParameters& original,
-                                   const StopQuestion& stop) {
+std::vector<VesicleParameters> box(const PlacementParameters& p, const VesicleParameters& original, const Room& room) {
   const Extent e = extent(original);
   const double side = std::cbrt(p.count * e.volume / p.volume_fraction);
-  require_room(p, e, std::pow(side + 2 * e.reach + gap_of(p, e), 3));
-  return insert_at_random(p, original, e, stop, [side](std::mt19937_64& random) {
-    return Vec3(side * (Vec3(uniform(random), uniform(random), uniform(random)) - Vec3::Constant(0.5)));
+  // Without a cell, vesicles reach out of the box that holds their centres.
+  require_room(p, e, room.cell ? room.cell->prod() : std::pow(side + 2 * e.reach + gap_of(p, e), 3), room.cell);
+  const Vec3 sides = room.cell.value_or(Vec3::Constant(side));
+  return insert_at_random(p, original, e, room, [sides](std::mt19937_64& random) {
+    return Vec3(sides.cwiseProduct(Vec3(uniform(random), uniform(random), uniform(random)) - Vec3::Constant(0.5)));
   });
 }
 
-std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleParameters& original,
-                                    const StopQuestion& stop) {
+std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleParameters& original, const Room& room) {
   const Extent e = extent(original);
   const double radius = p.radius.value_or(default_tube_radius * e.radius);
   if (radius <= e.reach)
     throw std::invalid_argument(fmt::format(
         "a tube of radius {:.3g} is narrower than a vesicle, which reaches {:.3g} from its centre", radius, e.reach));
   const double length = p.count * e.volume / p.volume_fraction / (pi * radius * radius);
-  require_room(p, e, pi * std::pow(radius + gap_of(p, e) / 2, 2) * (length + 2 * e.reach + gap_of(p, e)));
-  return insert_at_random(p, original, e, stop, [&, length](std::mt19937_64& random) {
+  require_room(p, e, pi * std::pow(radius + gap_of(p, e) / 2, 2) * (length + 2 * e.reach + gap_of(p, e)), {});
+  return insert_at_random(p, original, e, room, [&, length](std::mt19937_64& random) {
     const double r = (radius - e.reach) * std::sqrt(uniform(random)), f = 2 * pi * uniform(random);
     return Vec3(length * (uniform(random) - 0.5), r * std::cos(f), r * std::sin(f));
   });
 }
 
-std::vector<VesicleParameters> from_file(const PlacementParameters& p, const VesicleParameters& original,
-                                         const StopQuestion&) {
+std::vector<VesicleParameters> from_file(const PlacementParameters& p, const VesicleParameters& original, const Room&) {
   std::string why;
   std::ifstream in = open_input(p.file, why);
   if (!in) throw std::invalid_argument(fmt::format("cannot read the table of centres '{}': {}", p.file, why));
@@ -190,10 +248,13 @@ std::vector<VesicleParameters> from_file(const PlacementParameters& p, const Ves
 const std::vector<CatalogueRow<PlacementFunction>>& placement_catalogue() {
   static const std::vector<CatalogueRow<PlacementFunction>> table{
       {"lattice",
-       "cubic lattice, centres shifted at random by jitter",
+       "cubic lattice, or one that fills the cell, centres shifted at random by jitter",
        {"volume_fraction", "jitter", "count", "orientation", "seed"},
        lattice},
-      {"box", "at random without overlap in a cube", {"volume_fraction", "gap", "count", "orientation", "seed"}, box},
+      {"box",
+       "at random without overlap in a cube, or in the cell",
+       {"volume_fraction", "gap", "count", "orientation", "seed"},
+       box},
       {"tube",
        "at random without overlap in a tube along x",
        {"volume_fraction", "radius", "gap", "count", "orientation", "seed"},
@@ -210,7 +271,8 @@ Scene placed(Scene scene, const StopQuestion& stop) {
     scene.vesicles.pop_back();
     const auto* row = find_row(placement_catalogue(), p.kind);
     if (!row) throw std::invalid_argument("unknown placement '" + p.kind + "'");
-    for (VesicleParameters& v : row->function(p, original, stop)) scene.vesicles.push_back(std::move(v));
+    for (VesicleParameters& v : row->function(p, original, {scene.cell.size, stop}))
+      scene.vesicles.push_back(std::move(v));
   }
   scene.placements.clear();
   return scene;

@@ -60,7 +60,8 @@ double smallest_radius(std::span<const AreaVolume> sizes) {
   return least;
 }
 
-SuspensionOptions suspension_options(const NumericsParameters& n, double smallest_radius, double tolerance) {
+SuspensionOptions suspension_options(const NumericsParameters& n, double smallest_radius, double tolerance,
+                                     const CellSides& cell) {
   // Quadrature near vesicles errs by 3e-7.
   constexpr double finest = 1e-8, coarsest = 1e-3;
   SuspensionOptions options;
@@ -68,7 +69,7 @@ SuspensionOptions suspension_options(const NumericsParameters& n, double smalles
   options.interaction.source_order = n.interaction_order;
   options.interaction.near_rule = n.near_rule;
   options.interaction.near_order = {n.near_latitudes, n.near_longitudes};
-  options.interaction.far = {n.far_field, std::clamp(tolerance, finest, coarsest)};
+  options.interaction.far = {n.far_field, std::clamp(tolerance, finest, coarsest), cell};
   options.repulsion_strength = n.repulsion_strength;
   options.repulsion_range = n.repulsion_range.value_or(default_repulsion_range * smallest_radius);
   return options;
@@ -91,7 +92,7 @@ Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, 
     parallel_for(n, freeze);
   }
   Suspension s{{}, plan_interaction(plans, positions, materials, options.interaction), {}};
-  if (n > 1 && options.repulsion_strength > 0)
+  if (!s.interaction.none() && options.repulsion_strength > 0)
     s.repulsion = repulsion(s.interaction, options.repulsion_strength, options.repulsion_range);
   for (auto& m : frozen) s.membranes.push_back(std::move(*m));
   return s;
@@ -120,7 +121,7 @@ std::vector<Coefficients> suspension_forcing(const Suspension& s, std::span<cons
     r[i] = m.bases.field.analyze(background_velocity(flows, time, m.geometry.x.value));
     r[i].values += m.layers.single.apply(forces[i]).values;
   });
-  if (n > 1) {
+  if (!s.interaction.none()) {
     const std::vector<Coefficients> others = interaction_of(s, forces);
     for (int i = 0; i < n; ++i) r[i].values += others[i].values;
   }
@@ -162,7 +163,7 @@ Vector apply_blocks(std::span<const Block> blocks, const Interaction& interactio
     densities[i] = std::move(trial.densities);
     velocity[i] = std::move(trial.own_velocity);
   });
-  if (n > 1) {
+  if (!interaction.none()) {
     const std::vector<Coefficients> others = induced_velocity(interaction, densities);
     for (int i = 0; i < n; ++i) velocity[i].values += others[i].values;
   }

@@ -42,7 +42,8 @@ Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const 
                              std::span<const std::optional<PinnedTension>> pinned = {});
 
 /// As a scene asks for them, lengths that are not given in terms of the smallest vesicle; far fields to a tolerance.
-SuspensionOptions suspension_options(const NumericsParameters&, double smallest_radius, double tolerance);
+SuspensionOptions suspension_options(const NumericsParameters&, double smallest_radius, double tolerance,
+                                     const CellSides& = {});
 
 /// r of (39a) for every vesicle: background flow, and the velocities induced by bending at the histories, buoyancy
 /// and repulsion of all vesicles, itself included. `displacements`: histories minus frozen positions, none when they

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace sim {
 
@@ -109,6 +110,8 @@ void add_near(const FlowField& field, int j, PointBlock& block, Matrix& u) {
 }  // namespace
 
 FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const FlowFieldOptions& options) {
+  if (scene.cell.size)
+    throw std::invalid_argument("velocities of the fluid between the vesicles of a periodic [cell] are not computed");
   const int n = int(state.vesicles.size());
   FlowField field{scene.flows, state.time, std::vector<FlowSource>(n), {}, {}, options};
   std::vector<Sources> coarse;

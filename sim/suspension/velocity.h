@@ -44,7 +44,8 @@ struct FlowField {
   std::vector<SourceDensities> coarse_densities;
   FlowFieldOptions options;
 };
-/// Forces are computed as the stepper does: bending, tension, buoyancy and repulsion of the scene.
+/// Forces are computed as the stepper does: bending, tension, buoyancy and repulsion of the scene. Throws
+/// std::invalid_argument for a scene with a periodic cell.
 FlowField flow_field(Plans&, const Scene&, const State&, const FlowFieldOptions& = {});
 
 struct FlowSamples {

@@ -67,9 +67,11 @@ TEST_CASE("bash completes commands, their options, and the words of the catalogu
   CHECK(offered({"render", "t.h5", "--gl", "os"}) == Words{"osmesa"});
   CHECK(offered({"figure", "tank"}) == Words{"tank-treading"});
   CHECK(offered({"list", "para"}) == Words{"parameters"});
+  CHECK(offered({"sweep", "s.toml", "--vary", "vesicle.visc"}) == Words{"vesicle.viscosity_contrast="});
   CHECK(offered({"converge", "s.toml", "--vary", ""}) == Words{"tolerance", "step", "order"});
   CHECK(offered({"converge", "s.toml", "--quantities", "half"}) == Words{"half-turn"});
   CHECK(offered({"reproduce", "table2"}) == Words{"table2"});
+  CHECK(offered({"validate", "jef"}) == Words{"jeffery"});
   CHECK(offered({"run", "s.toml", "--set", "vesicle.ord"}) == Words{"vesicle.order="});
   CHECK(offered({"run", "sce"}).empty());  // a file: bash's own completion takes over
   const Words styles = offered({"render", "t.h5", "--style", ""});

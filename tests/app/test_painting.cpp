@@ -84,6 +84,54 @@ field = "tension"
   }
 }
 
+TEST_CASE("a shared range is that of all movies of a command, for stills and for figures, too") {
+  const support::TemporaryFolder folder;
+  std::vector<sim::TrajectoryReader> readers;
+  std::vector<app::Settings> settings;
+  for (const char* rate : {"1.0", "3.0"}) {
+    const std::string text = std::string("[flow]\nkind = \"shear\"\nrate = ") + rate + R"(
+[time]
+end = 0.4
+step = 0.1
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.8
+axis = [1, 0, 0]
+order = 6
+[view]
+style = "field"
+field = "tension"
+field_range = "shared"
+)";
+    settings.push_back(app::parse_scene(text, "s.toml", "."));
+    sim::SimulationOptions options;
+    options.trajectory = (folder / (std::string(rate) + ".h5")).string();
+    sim::simulate(settings.back().scene, options, {});
+    readers.emplace_back(options.trajectory);
+  }
+  const std::vector<app::PictureSource> both{{readers[0], settings[0]}, {readers[1], settings[1]}};
+  const auto high_of = [](const app::Production& production) { return production.panels[0].painting.legend->high; };
+  std::vector<double> own;
+  for (const app::PictureSource& one : both) own.push_back(high_of(app::prepare_pictures({one})));
+  CHECK(own[1] > own[0]);
+  // Of one trajectory a still has the movie's.
+  for (std::size_t k = 0; k < 2; ++k) CHECK(high_of(app::prepare_pictures({both[k]}, 0.1)) == own[k]);
+  CHECK(app::shared_legend(both)->high == own[1]);
+  CHECK(high_of(app::prepare_pictures(both, 0.1)) == own[1]);
+  // Without the word a still has its own, and figures share nothing.
+  for (app::Settings& s : settings) s.view.field_range = {};
+  CHECK(high_of(app::prepare_pictures({both[1]}, 0.1)) < own[1]);
+  CHECK_FALSE(app::shared_legend(both));
+  // There is no range of two fields.
+  for (app::Settings& s : settings) s.view.field_range.shared = true;
+  settings[1].view.field = "normal-velocity";
+  CHECK_THROWS_WITH(app::shared_legend(both), Catch::Contains("'tension'") && Catch::Contains("'normal-velocity'"));
+  CHECK_THROWS_WITH(app::parse_scene("[flow]\nkind = \"none\"\n[time]\nend = 1\n[[vesicle]]\nshape = \"sphere\"\n"
+                                     "[view]\nfield_range = \"shard\"\n",
+                                     "s.toml", "."),
+                    Catch::Contains("did you mean 'shared'?"));
+}
+
 TEST_CASE("dots mark what is below zero: a range that is not about zero has none") {
   const auto mirrored = [](const std::string& range) {
     return legend_of("normal-velocity", 1, "field_range = " + range + "\ncolour_map = \"blue-red\"\n").mirrored;
@@ -212,8 +260,12 @@ TEST_CASE("a field that vanishes up to rounding has a range of its natural size,
     for (const char* field : {"tension", "membrane-speed", "normal-velocity", "bending-force"}) {
       INFO(field << ", radius " << radius);
       const render::Legend legend = at_rest(field, radius, "sphere");
-      CHECK(legend.low < 0);  // about zero, or about the field's one value
-      CHECK(legend.high - legend.low > 1e-6);
+      // About zero, or about the field's one value; a field that cannot be negative begins at zero.
+      if (std::string_view(field) == "membrane-speed")
+        CHECK(legend.low == 0);
+      else
+        CHECK(legend.low < 0);
+      CHECK(legend.high - legend.low > 0.9e-6);
     }
   const render::Legend curvature = at_rest("mean-curvature", 100, "sphere");
   CHECK(curvature.low < 1);

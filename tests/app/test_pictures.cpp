@@ -162,13 +162,40 @@ TEST_CASE("a movie without a ground is written where the format has transparency
     CHECK_THAT(refused.err, Contains("has no transparency") && Contains("webm"));
     CHECK_FALSE(fs::exists(desk / "a"));
   }
+  // Alphas of the first frame as a player finds them; FFmpeg's own decoder of VP9 knows none, and none decodes moving
+  // WebP.
+  const auto alphas_in = [&](const std::string& format) {
+    std::vector<std::string> words{"ffmpeg", "-v", "error", "-y"};
+    if (format == "webm") words.insert(words.end(), {"-c:v", "libvpx-vp9"});
+    words.insert(words.end(), {"-i", desk.file("a/movie." + format), "-frames:v", "1", "-f", "rawvideo", "-pix_fmt",
+                               "rgba", desk.file("raw")});
+    REQUIRE(support::run(desk, words).status == 0);
+    return support::read_file(desk / "raw");
+  };
   for (const char* format : {"webm", "mov", "apng", "mkv", "webp"}) {
     const Outcome outcome = draw(format);
     INFO(format << ": " << outcome.err);
     CHECK(outcome.status == 0);
     CHECK(fs::file_size(desk / (std::string("a/movie.") + format)) > 100);
+    if (format == std::string("webp")) continue;
+    const render::Image frame = render::read_png(desk / "a/frames/000000.png").image;
+    REQUIRE(frame.channels == 4);
+    const std::string raw = alphas_in(format);
+    REQUIRE(raw.size() == frame.pixels.size());
+    const bool lossless = format == std::string("apng") || format == std::string("mkv");
+    int worst = 0, there = 0, nothing = 0;
+    for (std::size_t k = 3; k < raw.size(); k += 4) {
+      const int alpha = static_cast<unsigned char>(raw[k]);
+      worst = std::max(worst, std::abs(alpha - frame.pixels[k]));
+      there += frame.pixels[k] == 255;
+      nothing += frame.pixels[k] == 0;
+    }
+    CHECK(worst <= (lossless ? 0 : 24));  // of codecs with losses, at contours
+    CHECK(static_cast<unsigned char>(raw[3]) <= (lossless ? 0 : 2));
+    CHECK(static_cast<unsigned char>(raw[4 * (24 * 64 + 32) + 3]) >= (lossless ? 255 : 253));  // on the vesicle
+    CHECK(there > 100);
+    CHECK(nothing > 500);
   }
-  CHECK(render::read_png(desk / "a/frames/000000.png").image.channels == 4);
   CHECK_THAT(desk({"render", desk.file("t.h5"), "--set", "view.background=drak"}).err,
              Contains("did you mean 'dark'?"));
 }
@@ -241,6 +268,52 @@ TEST_CASE("the inset cuts what the camera follows or aims at, not the middle bet
   CHECK(coloured({"--set", "view.target=[0, 3, 0]"}) > 100);
   CHECK(coloured({"--set", "view.follow=vesicle", "--set", "view.follow_vesicle=1"}) > 100);
   CHECK(coloured({"--set", "view.follow=vesicle", "--set", "view.follow_vesicle=0"}) > 100);
+}
+
+TEST_CASE("a common cut opens all vesicles at one plane, others each through its own centre", "[commands]") {
+  // Unit spheres 0.6 before the common centre, at it, and 0.6 behind it: their shadows are discs, and what a common
+  // plane leaves of the first is a cap of radius sqrt(1 - 0.36).
+  std::string text = scene.substr(0, scene.find("[[vesicle]]"));
+  for (const char* centre : {"[-3, -0.6, 0]", "[0, 0, 0]", "[3, 0.6, 0]"})
+    text += std::string("[[vesicle]]\nshape = \"sphere\"\norder = 6\ncenter = ") + centre + "\n";
+  const Desk desk(text + "[view]\nsize = [640, 160]\nprojection = \"orthographic\"\nbackground = \"white\"\n");
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q", "--steps", "0"}).status == 0);
+  const auto widths = [&](const char* cut) {
+    std::vector<std::string> words{"render",
+                                   desk.file("t.h5"),
+                                   "--time",
+                                   "0",
+                                   "-o",
+                                   desk.file("still.png"),
+                                   "--force",
+                                   "--style",
+                                   "cutaway",
+                                   "--set",
+                                   std::string("view.cut=") + cut};
+    for (const char* off : {"flow_arrows", "time_stamp", "caption", "scale_bar"})
+      words.insert(words.end(), {"--set", std::string("view.") + off + "=false"});
+    const Outcome outcome = desk(words);
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const render::Image image = render::read_png(desk / "still.png").image;
+    std::vector<double> found;  // of the pieces of ink along the middle
+    bool inside = false;
+    for (int x = 0; x < image.width; ++x) {
+      const bool ink = image.at(x, 80)[0] + image.at(x, 80)[1] + image.at(x, 80)[2] < 720;
+      if (ink && !inside) found.push_back(0);
+      inside = ink;
+      if (ink) ++found.back();
+    }
+    return found;
+  };
+  const std::vector<double> each = widths("each"), common = widths("common");
+  REQUIRE(each.size() == 3);
+  REQUIRE(common.size() == 3);
+  constexpr double rim = 4;  // px: of the rim's two lines
+  for (const double width : each) CHECK(width == Approx(each[1]).margin(1.5));
+  CHECK(common[1] == Approx(each[1]).margin(1.5));
+  CHECK(common[2] == Approx(each[1]).margin(rim));  // its equator is behind the plane and seen whole
+  CHECK(common[0] == Approx(0.8 * (each[1] - rim) + rim).margin(2));
 }
 
 TEST_CASE("two trajectories stand side by side, the shorter one at rest at its end", "[commands]") {

@@ -89,7 +89,7 @@ TEST_CASE("an unknown key is told with line, column and the nearest known one", 
 TEST_CASE("values out of range are told with line, column and range", "[scene]") {
   CHECK(error_of(replaced("order = 12", "order = 1")) == "s.toml:14:9: 'order' must be at least 2, at most 64, not 1");
   CHECK(error_of(replaced("order = 12", "viscosity_contrast = -1")) ==
-        "s.toml:14:22: 'viscosity_contrast' must be above 0, not -1");
+        "s.toml:14:22: 'viscosity_contrast' must be above 0, not -1; 0.001 is near a bubble, 1000 near a rigid body");
   CHECK(error_of(replaced("0.85", "1.2")) == "s.toml:13:18: 'reduced_volume' must be above 0, at most 1, not 1.2");
   CHECK(error_of(replaced("step = 0.1", "step = 0")) == "s.toml:9:8: 'step' must be above 0, not 0");
   CHECK_THAT(error_of(replaced("step = 0.1", "step = nan")), Contains("s.toml:9:8"));
@@ -289,4 +289,19 @@ TEST_CASE("a poster beyond the end of the scene is refused", "[scene]") {
              Contains("s.toml:16:10: 'poster' must be at most time.end, 2, not 2.5"));
   CHECK_THAT(error_of(good + "[movie]\nposter = 2.00001\n"), Contains("at most time.end, 2, not 2.00001"));
   CHECK(parse_scene(good + "[movie]\nposter = 2\n", "s.toml", ".").movie.poster == 2.0);
+}
+
+TEST_CASE("a periodic cell takes flows that keep it one, and sets the volume fraction itself", "[scene]") {
+  const std::string cell = "[cell]\nsize = [6, 5, 4.5]\n";
+  CHECK(error_of(good + cell) == "");
+  CHECK(*parse_scene(good + cell, "s.toml", ".").scene.cell.size == sim::Vec3(6, 5, 4.5));
+  CHECK_THAT(error_of(good + "[cell]\nsize = [6, 5, 0]\n"), Contains("s.toml:16:15") && Contains("'size'"));
+  CHECK_THAT(error_of(good + "[cell]\nsice = [6, 5, 4]\n"), Contains("did you mean 'size'"));
+  CHECK_THAT(error_of(replaced("kind = \"shear\"\nrate = 1.0", "kind = \"extension\"") + cell),
+             Contains("s.toml:4:8") && Contains("'extension' does not keep a [cell] periodic"));
+  CHECK_THAT(error_of(good + cell + "[numerics]\nfar_field = \"direct\"\n"),
+             Contains("s.toml:18:13") && Contains("leave it \"auto\""));
+  CHECK(error_of(good + cell + "[placement]\nkind = \"box\"\ncount = 2\n") == "");
+  CHECK_THAT(error_of(good + cell + "[placement]\nkind = \"box\"\ncount = 2\nvolume_fraction = 0.05\n"),
+             Contains("s.toml:20:19") && Contains("leave 'volume_fraction' out"));
 }

@@ -143,7 +143,7 @@ void direct_sum(benchmark::State& state) {
   state.counters["pairs"] = benchmark::Counter(double(count * count), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// scenes/suspension.toml with another number of vesicles.
+/// Vesicles on a lattice with some disorder, at a volume fraction of 0.06.
 Scene suspension_scene(int count, const char* method) {
   Scene scene = test::shear_scene(prolate(8, 1), 0.1, 1, "globally-implicit");
   scene.vesicles[0].reduced_volume = 0.9;

@@ -434,6 +434,40 @@ TEST_CASE("a page without ground is transparent, another ground is where nothing
              Catch::Contains("did you mean 'dark'"));
 }
 
+TEST_CASE("a picture in a phase diagram is as large as was asked for, and PDF and SVG keep what is transparent in it") {
+  // A red disc on nothing.
+  render::FigureInput input;
+  input.parameters.kind = "phase-diagram";
+  input.parameters.size = {80};
+  input.diagram = surfaces::diagram(1);
+  render::DiagramPoint& point = input.diagram.points.front();
+  point.reach = 2;
+  const render::DiagramPicture place = render::diagram_picture(input);
+  CHECK(place.reach >= 2);
+  CHECK(place.side < 80 / 25.4 * 72 / 2);
+  render::Image disc(64, 64, 4);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      if (std::hypot(x - 31.5, y - 31.5) < 20) {
+        disc.at(x, y)[0] = 255;
+        disc.at(x, y)[3] = 255;
+      }
+  point.picture = disc;
+  const render::Figure figure = render::find_figure("phase-diagram").draw(input);
+  const support::TemporaryFolder folder;
+  render::write_figure(figure, folder / "d");
+  const render::Image page = render::read_png(folder / "d.png").image;
+  double red = 0;
+  for (int y = 0; y < page.height; ++y)
+    for (int x = 0; x < page.width; ++x)
+      if (const std::uint8_t* p = page.at(x, y); p[0] > 250 && p[1] < 128 && p[2] < 128) ++red;
+  const double pixels = 300.0 / 72;
+  const double disc_area = std::numbers::pi * std::pow(20.0 / 64 * place.side * pixels, 2);
+  CHECK(red == Approx(disc_area).epsilon(0.1));  // less the mark that lies on it
+  CHECK(support::read_file(folder / "d.pdf").find("/SMask") != std::string::npos);
+  CHECK(support::read_file(folder / "d.svg").find("data:image/png;base64") != std::string::npos);
+}
+
 TEST_CASE("letters that no font has are told") {
   render::Drawing drawing{200, 60, nullptr, render::white, 300};
   drawing.paint = [](cairo_t* cairo, const render::Font& font) {

@@ -48,6 +48,40 @@ TEST_CASE("a sphere hides its projected solid angle from a point of another") {
     }
 }
 
+TEST_CASE("what a neighbour hides depends on the place on the membrane, not on where its poles lie") {
+  // Two spheres: by symmetry only the angle from the line of their centres counts. The first has its poles on that
+  // line, and across it.
+  const sim::VesicleState neighbour = surfaces::sphere({0, 0, 2.4}, 0.9);
+  std::vector<double> known;
+  for (const double degrees : {0.0, 90.0}) {
+    const Eigen::Matrix3d turned = surfaces::turn(degrees, {1, 0, 0});
+    const sim::VesicleState own = surfaces::vesicle([&](const Vec3& s) -> Vec3 { return turned * s; });
+    const render::Mesh mesh = shaded(surfaces::state_of({own, neighbour}), 0);
+    std::vector<double> means;
+    for (const double cosine : {0.924, 0.707, 0.383, -0.259}) {  // of rings of the mesh
+      double low = 1, high = 0, sum = 0;
+      int count = 0;
+      for (std::size_t k = 0; k < mesh.position.size(); ++k) {
+        if (std::abs(mesh.position[k].z - cosine) > 0.04) continue;
+        const double open = mesh.light[k].x;
+        low = std::min(low, open);
+        high = std::max(high, open);
+        sum += open;
+        ++count;
+      }
+      INFO(degrees << ", " << cosine << ": " << low << " to " << high);
+      REQUIRE(count > 5);
+      CHECK(high - low < 0.1);  // the band, and 264 discs
+      means.push_back(sum / count);
+    }
+    CHECK(means[0] < means[1] - 0.02);
+    CHECK(means[1] < means[2]);
+    CHECK(means[3] > 0.995);
+    if (known.empty()) known = means;
+    for (std::size_t k = 0; k < means.size(); ++k) CHECK(means[k] == Approx(known[k]).margin(0.02));
+  }
+}
+
 TEST_CASE("a hollow is darker than the rim round it") {
   const render::Mesh mesh = shaded(surfaces::state_of({surfaces::disc(Eigen::Matrix3d::Identity())}), 0);
   const float hollow = mesh.light[mesh.light.size() - 2].x;  // the pole

@@ -1,4 +1,5 @@
 // What is drawn of membranes, measured against geometry.
+#include "render/core/paint.h"
 #include "render/core/style.h"
 #include "render/draw/draw.h"
 
@@ -302,6 +303,49 @@ TEST_CASE("a cut shows the inside, its rim lies on the plane, and nothing of the
   aside.camera = render::make_camera(render::frame_trajectory(std::span(&summary, 1), aside.view), summary.centroid);
   CHECK(silhouette(render::draw_frame(renderer, aside), aside.camera).area ==
         Approx(std::numbers::pi / 2).epsilon(0.05));
+}
+
+TEST_CASE("arrows along the line of sight are rings of their own size: with a dot towards the viewer, a cross away") {
+  render::Renderer renderer = software();
+  render::ViewParameters view = surfaces::bare_view(600, 300);
+  view.supersampling = 2;
+  view.flow_arrows = true;
+  const sim::State state = surfaces::state_of({surfaces::sphere()});
+  render::Frame frame = surfaces::frame_of(state, view);
+  frame.bodies.clear();
+  const double half = frame.camera.half_height, px = 150 / half;
+  // The eye is at y < 0. The second arrow has half the speed of the first.
+  frame.arrows.points = sim::Matrix{{-0.8 * half, 0, 0}, {0.8 * half, 0, 0}};
+  frame.arrows.velocities = sim::Matrix{{0, -1, 0}, {0, 0.5, 0}};
+  const Image image = render::draw_frame(renderer, frame);
+  const Image ground = [&] {
+    render::Frame empty = frame;
+    empty.view.flow_arrows = false;
+    return render::draw_frame(renderer, empty);
+  }();
+  // Shares of the radius, right and up, in the four quarters.
+  const auto inked = [&](double middle, double radius, double right, double up) {
+    int count = 0;
+    for (const double sx : {-1.0, 1.0})
+      for (const double sy : {-1.0, 1.0}) {
+        const int x = static_cast<int>(std::floor(300 + middle * px + sx * right * radius * px)),
+                  y = static_cast<int>(std::floor(150 - sy * up * radius * px));
+        count += brightness(image.at(x, y)) < brightness(ground.at(x, y)) - 0.1;
+      }
+    return count;
+  };
+  // The header of draw.h: a ring of 0.16 of the arrow's length.
+  const double first = 0.16 * render::longest_arrow * half, second = first / 2;
+  const double diagonal = 1 / std::numbers::sqrt2;
+  for (const auto& [middle, radius] : {std::pair{-0.8 * half, first}, std::pair{0.8 * half, second}}) {
+    CHECK(inked(middle, radius, diagonal, diagonal) == 4);
+    CHECK(inked(middle, radius, 1.5, 0) == 0);  // nothing of an arrow seen from its tip
+    CHECK(inked(middle, radius, 1.2, 1.2) == 0);
+    CHECK(inked(middle, radius, 0.05, 0.05) == 4);  // the dot, or where the arms meet
+  }
+  CHECK(inked(-0.8 * half, first, 0.6 * diagonal, 0.6 * diagonal) == 0);  // between dot and ring
+  CHECK(inked(0.8 * half, second, 0.6 * diagonal, 0.6 * diagonal) == 4);  // on the arms of the cross
+  CHECK(inked(0.8 * half, second, 0.6, 0) == 0);                          // between them
 }
 
 TEST_CASE("every style of the catalogue draws its own picture") {

@@ -192,6 +192,28 @@ TEST_CASE("the smooth rule and the near rule agree where both are accurate") {
   for (int k = 0; k < 2; ++k) CHECK((near[k].values - smooth[k].values).norm() < 1e-7 * near[k].values.norm());
 }
 
+TEST_CASE("two close vesicles move as the near rule for an error says, to that error, and no finer than need be") {
+  const auto velocity = [](int order, double gap, NearOrder nodes) {
+    const double half = spheroid_axes(0.85, true).y() + gap / 2;
+    Scene scene = pair_scene({0, 0, half}, 0.1, 10, "bdf2", order);
+    for (VesicleParameters& v : scene.vesicles) v.reduced_volume = 0.85;
+    scene.vesicles[0].axis = {1, 0, 0};
+    scene.vesicles[1].axis = {0.6, 0.8, 0};
+    scene.numerics.far_field = "direct";
+    scene.numerics.near_latitudes = nodes.latitudes;
+    scene.numerics.near_longitudes = nodes.longitudes;
+    Plans plans;
+    const Model s = make_model(scene, plans);
+    return evaluate(s, initial_dynamics(s)).value().vesicles[0].velocity.values;
+  };
+  for (const auto& [order, gap, allowed] : {std::tuple{8, 0.1, 1e-4}, {8, 0.02, 1e-5}, {12, 0.02, 1e-6}}) {
+    const Matrix exact = velocity(order, gap, {72, 96});
+    const double error = (velocity(order, gap, near_order_for(order, allowed)) - exact).cwiseAbs().maxCoeff();
+    CHECK(error < allowed);
+    CHECK(error > 0.01 * allowed);
+  }
+}
+
 TEST_CASE("two sinking spheres far apart follow the method of reflections with an error of fourth order") {
   // Side by side 1 + (3/4) a/r + (1/2)(a/r)^3; in line 1 + (3/2) a/r - (a/r)^3; what is left out begins at (a/r)^4.
   const auto excess = [](double r, const Vec3& along) {

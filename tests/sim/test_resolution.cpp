@@ -213,3 +213,26 @@ TEST_CASE("vesicles a film apart begin with the degrees that resolve it, or with
   simulate(scene, options, observer);
   CHECK_THAT(warnings, Catch::Contains("order 8 leaves errors") && Catch::Contains("try numerics.most_order 12"));
 }
+
+TEST_CASE("with fixed steps vesicles nearer than their order tells apart are warned of, and no others") {
+  Scene scene = followed(1e-2, 10, 1);
+  scene.time.tolerance.reset();
+  scene.time.step = 0.05;
+  scene.vesicles.push_back(scene.vesicles[0]);
+  const double thickness = 2 * spheroid_axes(0.85, true).y();
+  const auto warnings_at = [&](int order, double gap) {
+    for (VesicleParameters& v : scene.vesicles) v.order = order;
+    scene.vesicles[1].center = {0, thickness + gap, 0};
+    Plans plans;
+    const Model model = make_model(scene, plans);
+    return scene_warnings(model, initial_dynamics(model));
+  };
+  // exp(-2.1 p sqrt(h)) is a quarter of h at 0.062 for p = 8, and at 0.035 for p = 12.
+  CHECK(warnings_at(8, 0.08).empty());
+  CHECK(warnings_at(12, 0.05).empty());
+  const std::vector<std::string> warnings = warnings_at(8, 0.05);
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Catch::Contains("vesicle 0 (and 1 more): the nearest neighbour is 0.05 area radii away") &&
+                              Catch::Contains("order 8 tells gaps from 0.062 on") && Catch::Contains("try order 10"));
+  CHECK_THAT(warnings_at(8, 0.002).at(0), Catch::Contains("begin farther apart"));
+}

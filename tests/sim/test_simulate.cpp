@@ -79,6 +79,18 @@ TEST_CASE("a run that is stopped and resumed anywhere equals the uninterrupted o
   }
 }
 
+TEST_CASE("a run in a cell that shears is resumed bit for bit, too") {
+  Scene scene = short_scene();
+  scene.vesicles[0].order = 4;
+  scene.cell.size = Vec3(3.8, 3.2, 3.4);
+  const support::TemporaryFolder folder;
+  run(scene, folder.path() / "whole.h5");
+  CHECK(run(scene, folder.path() / "part.h5", false, 2).end == SimulationEnd::step_limit);
+  CHECK(run(scene, folder.path() / "part.h5", true).end == SimulationEnd::finished);
+  const bool same = contents(folder.path() / "part.h5") == contents(folder.path() / "whole.h5");
+  CHECK(same);
+}
+
 TEST_CASE("the same scene gives the same bytes twice, and with one and two threads") {
   const support::TemporaryFolder folder;
   const int threads = omp_get_max_threads();

@@ -11,7 +11,8 @@ class Scene {
     const vertices = this.mesh.vertices * count;
     const array = size => new Float32Array(size * vertices);
     this.arrays = { position: array(3), normal: array(3), label: array(3), dot: array(4), next: array(4), paint: array(4),
-                    detail: array(4), scalar: array(1), contour: array(3), outline: array(4) };
+                    detail: array(4), scalar: array(1), contour: array(3), outline: array(4), light: array(2), edge: array(1) };
+    this.coarse = new Mesh(sketchLatitudes);
     this.nearest = new Float32Array(2 * vertices);
     this.slopes = { theta: new Float32Array(3 * this.mesh.vertices), phi: new Float32Array(3 * this.mesh.vertices) };
     this.buffers = {};
@@ -56,7 +57,7 @@ class Scene {
     };
     const place = [["position", 0, 3], ["normal", 1, 3]];
     this.bodies = vertexArray([...place, ["label", 2, 3], ["dot", 3, 4], ["next", 4, 4], ["paint", 5, 4], ["detail", 6, 4],
-                               ["scalar", 7, 1], ["contour", 10, 3]]);
+                               ["scalar", 7, 1], ["edge", 9, 1], ["contour", 10, 3], ["light", 11, 2]]);
     this.hulls = vertexArray([...place, ["outline", 2, 4]]);
     this.corners = gl.createBuffer();
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
@@ -95,11 +96,14 @@ class Scene {
   evaluate(time) {
     const { mesh, arrays, slopes, page, data } = this, count = mesh.vertices;
     this.time = time;
+    this.sketches = [];
+    this.shaded = undefined;
     page.vesicles.forEach((vesicle, v) => {
       const series = data.vesicles[v], part = (name, size) => arrays[name].subarray(size * v * count, size * (v + 1) * count);
       const coefficients = numbersAt(series.position, time, vesicle.breaks);
       const position = part("position", 3), normal = part("normal", 3), label = part("label", 3);
       mesh.sample(coefficients, 3, position, slopes);
+      if (page.paint.occlusion > 0) this.sketches.push(new Sketch(this.coarse, coefficients));
       for (let k = 0; k < 3 * count; k += 3) {
         const { theta, phi } = slopes;
         const x = theta[k + 1] * phi[k + 2] - theta[k + 2] * phi[k + 1], y = theta[k + 2] * phi[k] - theta[k] * phi[k + 2],
@@ -134,7 +138,7 @@ class Scene {
     const matrices = camera.matrices(size), height = size.height / matrices.fit;
     // px of the page at a height of 1080 in samples
     const samples = (px, least) => size.scale * Math.max(px * height / 1080, Math.min(px, least));
-    const look = { style, matrices, samples, size, height, line: samples(page.paint.line_width / 2, 0.42), outline: samples(page.paint.outline_width, 1) };
+    const look = { style, matrices, axes: camera.axes, samples, size, height, line: samples(page.paint.line_width / 2, 0.42), outline: samples(page.paint.outline_width, 1) };
     gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.CULL_FACE);
@@ -185,8 +189,14 @@ class Scene {
   }
 
   // What the vertices carry of the vesicles, the style and the camera.
-  prepare({ style, matrices }) {
-    const { page, arrays, mesh } = this;
+  prepare(look) {
+    const { style, matrices } = look, { page, arrays, mesh } = this;
+    if (style.occluded) this.lightUp(look);
+    if (style.see_through && page.paint.outline_width > 0) {
+      page.vesicles.forEach((_, v) => contourDistances(mesh, arrays.position, arrays.normal, v * mesh.vertices, matrices,
+                                                       this.gl.drawingBufferHeight / 2, look.outline + 6, arrays.edge));
+      this.refill(this.buffers.edge, arrays.edge);
+    }
     if (this.prepared !== style) {
       this.fill("paint", vesicle => [...(style.own_colour ? vesicle.colour : [1, 1, 1]), 1]);
       this.fill("contour", vesicle => style.see_through ? vesicle.ghost_contour : vesicle.contour);
@@ -203,6 +213,19 @@ class Scene {
     });
     this.refill(this.buffers.dot, arrays.dot);
     this.refill(this.buffers.next, arrays.next);
+  }
+
+  // The key light turns with the camera.
+  lightUp({ axes, matrices, size }) {
+    const { page, arrays, mesh, sketches } = this, [x, y, z] = page.paint.key_light;
+    const key = unit(combined([x, axes.right], [y, axes.up], [z, axes.back]));
+    const large = v => page.vesicles[v].radius / matrices.unit * size.height / 2 > largeRadius;
+    const shaded = [...key, ...page.vesicles.map((_, v) => large(v))].join();
+    if (this.shaded === shaded) return;
+    this.shaded = shaded;
+    page.vesicles.forEach((_, v) => shade(mesh, v, sketches, key, large(v), 0.75 * page.paint.occlusion,
+                                          arrays.light.subarray(2 * v * mesh.vertices, 2 * (v + 1) * mesh.vertices)));
+    this.refill(this.buffers.light, arrays.light);
   }
 
   drawBodies(look) {
@@ -223,7 +246,6 @@ class Scene {
       set.number("u_dot_spacing", 2 * Math.max(page.paint.sign_dot_spacing * height / 1080, page.paint.sign_dot_least) / height);
     }
     gl.bindVertexArray(this.bodies);
-    gl.vertexAttrib1f(9, 0);  // from the contour: everything may be one
     if (!style.see_through) {
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
       gl.drawElements(gl.TRIANGLES, this.sorted.length, gl.UNSIGNED_INT, 0);

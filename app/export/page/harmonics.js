@@ -65,6 +65,21 @@ class Mesh {
     this.parameters[3 * south + 2] = -1;
   }
 
+  // The vertices that share an edge with vertex v, or a diagonal.
+  neighbours(v, visit) {
+    const { rings, longitudes: columns } = this, north = rings * columns, south = north + 1;
+    if (v >= north) {
+      for (let j = 0; j < columns; ++j) visit(j * rings + (v === north ? 0 : rings - 1));
+      return;
+    }
+    const i = v % rings, j = Math.floor(v / rings);
+    for (const column of [j, (j + 1) % columns, (j + columns - 1) % columns]) {
+      if (column !== j) visit(column * rings + i);
+      visit(i > 0 ? column * rings + i - 1 : north);
+      visit(i + 1 < rings ? column * rings + i + 1 : south);
+    }
+  }
+
   table(order) {
     if (!this.tables.has(order)) {
       const rows = [], quarter = this.longitudes / 4 + 1;

@@ -24,7 +24,7 @@ class Paint {
     const { gl, page } = this;
     const before = suffix => page.libraries[name + suffix].map(part => page.shaders[part]).join("");
     if (before(".vert")) defines += page.defines;  // programs that know the distance
-    const head = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n" + defines;
+    const head = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n" + page.light + defines;
     const text = suffix => head + before(suffix) + page.shaders[name + suffix];
     const whole = gl.createProgram();
     for (const [kind, source] of [[gl.VERTEX_SHADER, text(".vert")], [gl.FRAGMENT_SHADER, text(".frag")]]) {
