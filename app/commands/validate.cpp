@@ -26,7 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-void print_catalogue() {
+void print_validations() {
   for (const ValidationRow& row : validations()) fmt::print("{:<20} {}\n", row.name, row.meaning);
   fmt::print("{:<20} {}\n", "all", "all of these");
 }
@@ -97,7 +97,7 @@ std::vector<std::string_view> validation_names() {
 
 int validate(const Options& options) {
   if (options.words.empty()) {
-    print_catalogue();
+    print_validations();
     return 0;
   }
   const std::vector<ValidationRow> asked = asked_rows(options.words);

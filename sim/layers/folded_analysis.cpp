@@ -51,7 +51,7 @@ void legendre_analysis(const FoldedGrid& g, const SpectrumRows& r, const Lane* s
     for (std::size_t k = 0; k < g.blocks[b].m.size(); ++k)
       for (int parity = 0; parity < 2; ++parity) {
         const int m = g.blocks[b].m[k], at = r.first[b] + int(k);
-        const std::vector<int>& rows = r.coefficients[std::size_t(2 * at + parity)];
+        const std::vector<int>& rows = r.coefficients[2 * std::size_t(at) + std::size_t(parity)];
         multiply({int(rows.size()), g.half, g.legendre[parity][m].data()}, width,
                  spectrum + std::ptrdiff_t(parity * r.count + at) * g.half * components, EqualRows{components}, out,
                  ListedRows(rows.data()));
