@@ -152,7 +152,7 @@ Eigen::Vector3i places_in(const Vec3& cell, const Vec3& size, int count) {
   Eigen::Vector3i best(count, 1, 1);
   double most = 0;
   for (int x = 1; x <= count; ++x)
-    for (int y = 1; x * y < count + std::max(x, y); ++y) {
+    for (int y = 1; y <= (count + x - 1) / x; ++y) {
       const Eigen::Vector3i n(x, y, (count + x * y - 1) / (x * y));
       const double room = (cell.array() / n.cast<double>().array() / size.array()).minCoeff();
       if (room > most) {
