@@ -205,13 +205,14 @@ bool has_phase_diagram(const Sweep& sweep) {
                      [](const SweepRun& run) { return sim::steady_shear_rate(run.settings.scene.flows).has_value(); });
 }
 
-std::vector<fs::path> draw_phase_diagram(const Sweep& sweep, const fs::path& stem, ResultFiles& files,
-                                         const Options& options) {
+/// Of the runs that have states of their scene.
+std::vector<fs::path> draw_phase_diagram(const Sweep& sweep, const std::vector<RunOutcome>& outcomes,
+                                         const fs::path& stem, ResultFiles& files, const Options& options) {
   std::vector<sim::TrajectoryReader> trajectories;
   trajectories.reserve(sweep.runs.size());
   std::vector<FigureSource> sources;
-  for (const SweepRun& run : sweep.runs)
-    if (fs::exists(run.trajectory))
+  for (std::size_t k = 0; k < sweep.runs.size(); ++k)
+    if (const SweepRun& run = sweep.runs[k]; outcomes[k].kind != RunOutcome::Kind::missing)
       sources.push_back(
           {trajectories.emplace_back(run.trajectory), run.settings, run.point.name, run.trajectory.string()});
   render::FigureParameters figure = sweep.scene.figures.empty() ? render::FigureParameters{} : sweep.scene.figures[0];
@@ -247,7 +248,7 @@ std::string page_of(const Sweep& sweep, const SweepTable& table, const std::stri
   return page;
 }
 
-/// Tells of runs that did not reach the end, those of `told` apart; the status of the command.
+/// Tells of runs that did not reach the end; the status of the command.
 int told_outcomes(const Sweep& sweep, const std::vector<RunOutcome>& outcomes) {
   constexpr std::size_t most_told = 8;
   std::size_t stopped = 0, missing = 0;
@@ -307,7 +308,7 @@ int sweep(const Options& options) {
   const SweepTable table = table_of(sweep.axes, sweep.runs, outcomes, sweep.asked, options.quiet);
   remove_outdated(folder, true);
   std::vector<fs::path> written;
-  if (with_diagram) written = draw_phase_diagram(sweep, diagram, files, options);
+  if (with_diagram) written = draw_phase_diagram(sweep, outcomes, diagram, files, options);
   files.writer_inside()(table_file, csv_text(full_table(table)));
   files.writer_inside()(page, page_of(sweep, table, command_text(options), !written.empty()));
   files.settle();

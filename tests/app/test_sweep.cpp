@@ -43,7 +43,9 @@ struct Environment {
                                           "PMI_RANK",
                                           "PMI_SIZE",
                                           "SLURM_PROCID",
-                                          "SLURM_NTASKS"};
+                                          "SLURM_STEP_NUM_TASKS",
+                                          "SLURM_ARRAY_TASK_MAX",
+                                          "SLURM_ARRAY_TASK_STEP"};
 };
 
 const std::string quick = R"(title = "quick"
