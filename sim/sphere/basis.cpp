@@ -39,6 +39,7 @@ struct Basis::Plan {
   void fast_synthesis(const Lane* spectrum, int fields, TableRange made, const Wanted& wanted) const;
   void fast_analysis(const double* samples, int fields, Lane* spectrum) const;
   Coefficients analyze(const double* samples, int fields) const;
+  SecondDerivatives second(const Coefficients&, bool with_value) const;
   /// To be filled: points x fields.
   double* sized(Matrix& m, const Coefficients& c) const {
     m.resize(nlat * nlon, c.values.cols());
@@ -160,6 +161,19 @@ const Vector& Basis::phi() const { return plan_->phi; }
 const Vector& Basis::weights() const { return plan_->weights; }
 const Vector& Basis::sin_theta() const { return plan_->sin_theta; }
 
+SecondDerivatives Basis::Plan::second(const Coefficients& c, bool with_value) const {
+  SecondDerivatives d;
+  Wanted wanted{{{with_value ? 0 : 1, 3}, {0, 2}, {0, 1}}, {}};
+  if (with_value) wanted.out[0][0] = sized(d.value, c);
+  wanted.out[0][1] = sized(d.t, c);
+  wanted.out[0][2] = sized(d.tt, c);
+  wanted.out[1][0] = sized(d.f, c);
+  wanted.out[1][1] = sized(d.tf, c);
+  wanted.out[2][0] = sized(d.ff, c);
+  synthesize(c, wanted);
+  return d;
+}
+
 GridValues Basis::synthesize(const Coefficients& c) const {
   GridValues g{plan_->q, {}};
   Wanted wanted{{{0, 1}, {}, {}}, {}};
@@ -178,30 +192,9 @@ FirstDerivatives Basis::first(const Coefficients& c) const {
   return d;
 }
 
-SecondDerivatives Basis::second(const Coefficients& c) const {
-  SecondDerivatives d;
-  Wanted wanted{{{0, 3}, {0, 2}, {0, 1}}, {}};
-  wanted.out[0][0] = plan_->sized(d.value, c);
-  wanted.out[0][1] = plan_->sized(d.t, c);
-  wanted.out[0][2] = plan_->sized(d.tt, c);
-  wanted.out[1][0] = plan_->sized(d.f, c);
-  wanted.out[1][1] = plan_->sized(d.tf, c);
-  wanted.out[2][0] = plan_->sized(d.ff, c);
-  plan_->synthesize(c, wanted);
-  return d;
-}
+SecondDerivatives Basis::second(const Coefficients& c) const { return plan_->second(c, true); }
 
-SecondDerivatives Basis::derivatives(const Coefficients& c) const {
-  SecondDerivatives d;
-  Wanted wanted{{{1, 3}, {0, 2}, {0, 1}}, {}};
-  wanted.out[0][1] = plan_->sized(d.t, c);
-  wanted.out[0][2] = plan_->sized(d.tt, c);
-  wanted.out[1][0] = plan_->sized(d.f, c);
-  wanted.out[1][1] = plan_->sized(d.tf, c);
-  wanted.out[2][0] = plan_->sized(d.ff, c);
-  plan_->synthesize(c, wanted);
-  return d;
-}
+SecondDerivatives Basis::derivatives(const Coefficients& c) const { return plan_->second(c, false); }
 
 FirstDerivatives Basis::slopes(const Coefficients& c) const {
   FirstDerivatives d;
