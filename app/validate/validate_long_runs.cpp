@@ -76,8 +76,8 @@ Section validate_long_runs(Trials& trials) {
       "2e-4 for p = 8 with tolerances of 1e-3 and 1e-4. Tumbling is not periodic to begin with. Its shape settles "
       "within a few times that of bending, μR³/κ_b = 100 for κ_b = 0.01 and 10 for κ_b = 0.1, so half turns get "
       "shorter, for longer than the run for the first and until about 400 for the second. That is not error that "
-      "adds up: a tolerance of 1e-4 must show the same, to within 0.01, twice the error of a half turn with 1e-3, "
-      "which is 0.005; and for κ_b = 0.1 the end must differ by less than that. Besides, tumbling in the plane of "
+      "adds up: a tolerance of 1e-4 must show the same to within the 1e-3 of the way, and so of the time, that is "
+      "allowed, 0.013; and for κ_b = 0.1 the end must differ by less than 0.005. Besides, tumbling in the plane of "
       "shear is unstable here: a tilt out of it starts from rounding errors and grows by four decades from γ̇t = "
       "250 to 600, for tolerances of 1e-3 and 1e-4 and p = 8 and 12 alike, until it shortens the last half turns. "
       "The second moments that mix y with x and z, as a share of the trace, tell it; whoever needs motion within "
@@ -105,7 +105,7 @@ Section validate_long_runs(Trials& trials) {
   const HalfTurns fine = turns_to_600("time.tolerance=1e-4"), stiff = turns_to_600("vesicle.bending_modulus=0.1");
   for (const double time : {100.0, 300.0, 600.0})
     s.check(fmt::format("tumbling: half turn before {} against that with a tolerance of 1e-4", time),
-            turns.before(time), rounded(fine.before(time), 4), 0.01);
+            turns.before(time), rounded(fine.before(time), 4), 0.013);
   s.note("tumbling: half turn before 800, 1000", fmt::format("{:.4f}, {:.4f}", turns.before(800), turns.before(1000)));
   s.check("tumbling: κ_b = 0.1: half turn before 600 against that before 500", stiff.before(600),
           rounded(stiff.before(500), 4), 0.005);

@@ -58,10 +58,20 @@ Vec3 mean_place(const Coefficients& position) {
   return position.values.row(0).transpose() / std::sqrt(4 * std::numbers::pi);
 }
 
-/// The share of a wrong deformation that stays. Where the flow at a place turns material, most of it relaxes as the
-/// membrane runs round or the body turns; a flow that only stretches draws out what is wrong, too.
-double lasting_share(std::span<const FlowParameters> flows, double time, const Vec3& place, double radius) {
-  constexpr double turned = 0.15;  // measured: 0.02 to 0.2
+/// Between the last switch of a flow, or the start, and the next one, or the end.
+double phase_length(const Scene& scene, double time) {
+  double since = 0;
+  for (double next = next_switch(scene.flows, 0); next < time; next = next_switch(scene.flows, next)) since = next;
+  return std::min(scene.time.end, next_switch(scene.flows, time)) - since;
+}
+
+/// The share of a wrong deformation that stays after flows have acted for so long. Where the flow at a place turns
+/// material, most of it relaxes as the membrane runs round or the body turns, unless it is over before; a flow that
+/// only stretches draws out what is wrong, too.
+double lasting_share(std::span<const FlowParameters> flows, double time, double phase, const Vec3& place,
+                     double radius) {
+  constexpr double rest = 0.15;   // measured: 0.02 to 0.2
+  constexpr double angle = 0.25;  // by which material turns while it relaxes: twice this leaves 0.2 to 0.3
   Matrix points(6, 3);
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side)
@@ -70,7 +80,9 @@ double lasting_share(std::span<const FlowParameters> flows, double time, const V
   Eigen::Matrix3d gradient;
   for (int d = 0; d < 3; ++d) gradient.col(d) = (u.row(2 * d + 1) - u.row(2 * d)).transpose() / radius;
   const double strain = (gradient + gradient.transpose()).norm(), spin = (gradient - gradient.transpose()).norm();
-  return strain > spin ? turned + (1 - turned) * (1 - spin / strain) : turned;
+  if (!(strain > 0)) return rest;
+  const double turns = spin / (2 * std::numbers::sqrt2) * phase;
+  return rest + (1 - rest) * std::max(1 - spin / strain, std::exp(-turns / angle));
 }
 
 bool any_follows(const Scene& scene) {
@@ -107,11 +119,13 @@ std::vector<SpaceError> space_errors(const Model& s, const Dynamics& before, con
       gaps_to_neighbours(s.plans, positions(after), far * largest, cell_at(s.scene, after.time));
   // As a rate it is large where it is large beside the tolerance, however slow the motion.
   const double motion = 2 * allowed_error(s, before, dt) / (dt * tolerance_of(s.scene.time));
+  const auto flows = acting_flows(s.scene.flows, before.time, after.time);
+  const double middle = before.time + dt / 2, phase = phase_length(s.scene, middle);
   std::vector<SpaceError> errors;
   for (std::size_t k = 0; k < less.size(); ++k) {
     const VesicleDynamics& v = after.vesicles[k];
     const double radius = area_radius({v.area, v.volume});
-    const double stays = lasting_share(s.scene.flows, after.time, mean_place(v.position), radius);
+    const double stays = lasting_share(flows, middle, phase, mean_place(v.position), radius);
     const auto error = [&](const Coefficients& u) {
       return stays * normal_size(s.plans, v, v.motion.velocity.values - u.values) / radius;
     };

@@ -7,6 +7,8 @@
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -391,6 +393,23 @@ TEST_CASE("text as paths leaves no text in SVG and no font in PDF, and looks the
   CHECK((support::read_file(written[0]) == support::read_file(usual[0])));
 }
 
+/// The bytes of a PDF file, and after them all of its streams that can be inflated: newer versions of Cairo pack
+/// titles.
+std::string opened_pdf(const std::filesystem::path& path) {
+  const std::string raw = support::read_file(path);
+  std::string all = raw;
+  const std::string begin = "stream\n";
+  for (std::size_t at = raw.find(begin); at != std::string::npos; at = raw.find(begin, at + 1)) {
+    const std::size_t from = at + begin.size(), end = std::min(raw.find("endstream", from), raw.size());
+    std::string bytes(std::size_t{1} << 20, '\0');
+    uLongf size = bytes.size();
+    if (uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(raw.data() + from),
+                   end - from) == Z_OK)
+      all.append(bytes, 0, size);
+  }
+  return all;
+}
+
 TEST_CASE("title and scene of a figure are in all of its pictures") {
   const support::TemporaryFolder folder;
   render::Figure figure = render::find_figure("overlay").draw(input());
@@ -404,9 +423,9 @@ TEST_CASE("title and scene of a figure are in all of its pictures") {
   CHECK(holds("Title", figure.drawing.title));
   CHECK(holds("Description", figure.drawing.subject));
   CHECK_THAT(support::read_file(files[1]), Catch::Contains("<title>overlay: shear &amp; &lt;more&gt;</title>"));
-  CHECK_THAT(support::read_file(files[2]),
-             Catch::Contains("/Title (overlay: shear & <more>)") &&
-                 Catch::Contains("<FEFF005B0066006C006F0077005D000A"));  // UTF-16: "[flow]" and a new line
+  const std::string pdf = opened_pdf(files[2]);
+  CHECK(pdf.find("/Title (overlay: shear & <more>)") != std::string::npos);
+  CHECK(pdf.find("<FEFF005B0066006C006F0077005D000A") != std::string::npos);  // UTF-16: "[flow]" and a new line
 }
 
 TEST_CASE("a page without ground is transparent, another ground is where nothing is drawn, and ink is seen on it") {
