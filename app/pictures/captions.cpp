@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace app {
@@ -17,6 +18,10 @@ namespace {
 double deformation_rate(const sim::FlowParameters& flow, double radius) {
   if (flow.kind == "shear" || flow.kind == "extension") return std::abs(flow.rate);
   if (flow.kind == "poiseuille") return std::abs(flow.curvature) * radius;
+  if (flow.kind == "streams") {  // on the axis it is a Poiseuille flow with a = U k^2/2
+    const double k = 2 * std::numbers::pi / flow.wavelength.value_or(sim::unlimited);
+    return std::abs(flow.centreline_velocity) * k * k / 2 * radius;
+  }
   return 0;
 }
 

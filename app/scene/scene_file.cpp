@@ -228,7 +228,7 @@ struct Reader {
     return root;
   }
   void check_cell(const sim::Scene& scene) const {
-    if (const auto objection = sim::cell_objection(scene))
+    if (const auto objection = sim::scene_objection(scene))
       fail_at(source_of(table_with(objection->table, objection->key), objection->key), objection->reason);
     if (!scene.cell.size) return;
     const toml::table& placement = table_with("placement", "volume_fraction");

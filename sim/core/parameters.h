@@ -52,7 +52,8 @@ struct FlowParameters {
   std::string kind = "none";
   double rate = 1;                       ///< shear: u = rate z e_x; extension: rate (x, 0, -z) or rate (x, -y/2, -z/2)
   double curvature = 0;                  ///< poiseuille: a in u_x = U - a (y^2 + z^2)
-  double centreline_velocity = 0;        ///< poiseuille: U
+  double centreline_velocity = 0;        ///< poiseuille, streams: U
+  std::optional<double> wavelength;      ///< streams: l
   bool planar = true;                    ///< extension
   Vec3 angular_velocity = Vec3::Zero();  ///< rotation: u = omega x x
   Vec3 velocity = Vec3::Zero();          ///< uniform
@@ -70,8 +71,17 @@ void visit(P& p, V&& v) {
   v(Parameter{.name = "kind", .unit = "", .meaning = "which flow", .catalogue = "flows"}, p.kind);
   v(Parameter{.name = "rate", .unit = "1/time", .meaning = "shear or extension rate"}, p.rate);
   v(Parameter{.name = "curvature", .unit = "1/(length time)", .meaning = "a in u_x = U - a (y^2 + z^2)"}, p.curvature);
-  v(Parameter{.name = "centreline_velocity", .unit = "length/time", .meaning = "U in u_x = U - a (y^2 + z^2)"},
+  v(Parameter{.name = "centreline_velocity",
+              .unit = "length/time",
+              .meaning = "U in u_x = U - a (y^2 + z^2), and of the streams"},
     p.centreline_velocity);
+  v(Parameter{.name = "wavelength",
+              .unit = "length",
+              .meaning = "l of the streams, twice the distance of a stream from those beside it, which flow back",
+              .minimum = 0,
+              .exclusive_minimum = true,
+              .when_absent = "streams need it"},
+    p.wavelength);
   v(Parameter{.name = "planar", .unit = "", .meaning = "true: rate (x, 0, -z); false: rate (x, -y/2, -z/2)"}, p.planar);
   v(Parameter{.name = "angular_velocity", .unit = "1/time", .meaning = "omega in u = omega x r"}, p.angular_velocity);
   v(Parameter{.name = "velocity", .unit = "length/time", .meaning = "the uniform velocity"}, p.velocity);

@@ -23,7 +23,18 @@ double acting_time(const FlowParameters& f, double time) {
 }
 
 /// Whether a flow takes copies of a cell to copies of a cell whose first two sides do not change.
-bool keeps_lattice(const FlowParameters& f) { return f.kind == "none" || f.kind == "uniform" || f.kind == "shear"; }
+bool keeps_lattice(const FlowParameters& f) {
+  return f.kind == "none" || f.kind == "uniform" || f.kind == "shear" || f.kind == "streams";
+}
+
+/// Whether both sides across are whole numbers of wavelengths.
+bool fits(double wavelength, const Vec3& size) {
+  constexpr double rounding = 1e-9;
+  const auto whole = [&](double side) {
+    return side / wavelength > 0.5 && std::abs(std::remainder(side, wavelength)) < rounding * side;
+  };
+  return whole(size[1]) && whole(size[2]);
+}
 
 }  // namespace
 
@@ -55,16 +66,25 @@ Vec3 into_box(const Scene& scene, double time, const Vec3& place) {
   return shift;
 }
 
-std::optional<CellObjection> cell_objection(const Scene& scene) {
+std::optional<SceneObjection> scene_objection(const Scene& scene) {
+  for (const FlowParameters& f : scene.flows)
+    if (f.kind == "streams" && !f.wavelength)
+      return SceneObjection{"flow", "kind", "the flow 'streams' needs its 'wavelength'"};
   if (!scene.cell.size) return std::nullopt;
   for (const FlowParameters& f : scene.flows)
+    if (f.kind == "streams" && !fits(*f.wavelength, *scene.cell.size))
+      return SceneObjection{
+          "flow", "wavelength",
+          fmt::format("the sides of the [cell] along y and z must be multiples of the wavelength {:g}", *f.wavelength)};
+  for (const FlowParameters& f : scene.flows)
     if (!keeps_lattice(f))
-      return CellObjection{
+      return SceneObjection{
           "flow", "kind",
-          fmt::format("the flow '{}' does not keep a [cell] periodic; 'shear', 'uniform' and 'none' do", f.kind)};
+          fmt::format("the flow '{}' does not keep a [cell] periodic; 'shear', 'streams', 'uniform' and 'none' do",
+                      f.kind)};
   if (scene.numerics.far_field == "direct")
-    return CellObjection{"numerics", "far_field",
-                         "the copies of a [cell] are too many for far_field = \"direct\"; leave it \"auto\""};
+    return SceneObjection{"numerics", "far_field",
+                          "the copies of a [cell] are too many for far_field = \"direct\"; leave it \"auto\""};
   return std::nullopt;
 }
 

@@ -26,11 +26,11 @@ double cell_volume(const Scene&);  ///< infinite without a cell
 /// cell does: the sum of lattice vectors that leads there.
 Vec3 into_box(const Scene&, double time, const Vec3& place);
 
-/// Why a scene cannot have a cell: the offending table and key, and a sentence; nothing where it can.
-struct CellObjection {
+/// Why a scene cannot have its flows or its cell: the offending table and key, and a sentence; nothing where it can.
+struct SceneObjection {
   std::string_view table, key;
   std::string reason;
 };
-std::optional<CellObjection> cell_objection(const Scene&);
+std::optional<SceneObjection> scene_objection(const Scene&);
 
 }  // namespace sim

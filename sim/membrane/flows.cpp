@@ -21,6 +21,13 @@ const std::vector<CatalogueRow<FlowFunction>>& flow_catalogue() {
        [](const FlowParameters& f, const Vec3& x) -> Vec3 {
          return {f.centreline_velocity - f.curvature * (x[1] * x[1] + x[2] * x[2]), 0, 0};
        }},
+      {"streams",
+       "streams side by side, every other one back, u_x = U cos(2 pi y/l) cos(2 pi z/l)",
+       {"centreline_velocity", "wavelength"},
+       [](const FlowParameters& f, const Vec3& x) -> Vec3 {
+         const double k = 2 * std::numbers::pi / f.wavelength.value_or(unlimited);
+         return {f.centreline_velocity * std::cos(k * x[1]) * std::cos(k * x[2]), 0, 0};
+       }},
       {"extension",
        "straining flow, rate (x, 0, -z) planar or rate (x, -y/2, -z/2) uniaxial",
        {"rate", "planar"},
@@ -50,8 +57,9 @@ namespace {
 
 bool has_strength(const FlowParameters& f) {
   const auto* row = find_row(flow_catalogue(), f.kind);
-  // Two points tell every flow of the catalogue that is not zero: none vanishes at both.
-  return row && (row->function(f, Vec3(1, 2, 3)).norm() > 0 || row->function(f, Vec3(-3, 1, 0.5)).norm() > 0);
+  // Three points tell every flow of the catalogue that is not zero: none vanishes at all of them.
+  return row && (row->function(f, Vec3(1, 2, 3)).norm() > 0 || row->function(f, Vec3(-3, 1, 0.5)).norm() > 0 ||
+                 row->function(f, Vec3::Zero()).norm() > 0);
 }
 
 }  // namespace
@@ -86,7 +94,8 @@ std::optional<Vec3> across(std::span<const FlowParameters> flows, const Vec3& po
   std::string_view kind;
   for (const FlowParameters& f : flows) {
     if (carries_only(f)) continue;
-    if ((f.kind != "shear" && f.kind != "poiseuille") || (!kind.empty() && kind != f.kind)) return std::nullopt;
+    if ((f.kind != "shear" && f.kind != "poiseuille" && f.kind != "streams") || (!kind.empty() && kind != f.kind))
+      return std::nullopt;
     kind = f.kind;
   }
   if (kind.empty()) return std::nullopt;

@@ -1,5 +1,6 @@
 // Background flows u_inf (1b) and body forces. A flow is a row of a catalogue; a scene may add several, each with a
-// time factor. Every row solves the Stokes equations with at most a constant pressure gradient.
+// time factor. Every row solves the Stokes equations with at most a constant pressure gradient; "streams"
+// with a force 8 pi^2 U/l^2 cos cos on the fluid, as a flow along pipes side by side would need walls.
 #pragma once
 
 #include "sim/core/catalogue.h"
@@ -23,8 +24,9 @@ bool moves(const FlowParameters&, double end);
 /// Rate of a steady simple shear, signed: of one constant flow "shear" that is not zero, alone or beside uniform flows
 /// and fluid at rest; none with any other flow.
 std::optional<double> steady_shear_rate(std::span<const FlowParameters>);
-/// Unit vector across a parallel flow at a place: e_z in shear, away from the axis in Poiseuille flow (on it, e_z),
-/// uniform flows and fluid at rest aside. None without such a flow, beside any other, and where there are both.
+/// Unit vector across a parallel flow at a place: e_z in shear, away from the axis in Poiseuille flow and in streams
+/// (on it, e_z), uniform flows and fluid at rest aside. None without such a flow, beside any other, and where there are
+/// both.
 std::optional<Vec3> across(std::span<const FlowParameters>, const Vec3& position);
 /// The next time after `time` at which a flow is switched on or off; infinite: none.
 double next_switch(std::span<const FlowParameters>, double time);

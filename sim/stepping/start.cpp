@@ -139,7 +139,7 @@ Coefficients starting_position(const Scene& scene, VesicleParameters v, int orde
 /// A scene that has a cell may have it, and no vesicle is thicker than the cell: looking for where it meets its images
 /// would take for ever.
 void check_cell(const Model& s, const Dynamics& d) {
-  if (const auto objection = cell_objection(s.scene)) throw std::invalid_argument(objection->reason);
+  if (const auto objection = scene_objection(s.scene)) throw std::invalid_argument(objection->reason);
   if (!s.scene.cell.size) return;
   for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
     const VesicleDynamics& v = d.vesicles[k];

@@ -299,6 +299,15 @@ TEST_CASE("a periodic cell takes flows that keep it one, and sets the volume fra
   CHECK_THAT(error_of(good + "[cell]\nsice = [6, 5, 4]\n"), Contains("did you mean 'size'"));
   CHECK_THAT(error_of(replaced("kind = \"shear\"\nrate = 1.0", "kind = \"extension\"") + cell),
              Contains("s.toml:4:8") && Contains("'extension' does not keep a [cell] periodic"));
+  const auto streams = [](const std::string& more) {
+    return replaced("kind = \"shear\"\nrate = 1.0", "kind = \"streams\"\ncentreline_velocity = 1" + more);
+  };
+  CHECK_THAT(error_of(streams("")), Contains("s.toml:4:8") && Contains("'streams' needs its 'wavelength'"));
+  CHECK(error_of(streams("\nwavelength = 2.7")) == "");
+  CHECK(error_of(streams("\nwavelength = 2") + "[cell]\nsize = [3, 4, 6]\n") == "");
+  for (const char* length : {"4", "8", "2.1"})
+    CHECK_THAT(error_of(streams("\nwavelength = " + std::string(length)) + "[cell]\nsize = [3, 4, 6]\n"),
+               Contains("s.toml:6:14") && Contains("along y and z must be multiples of the wavelength"));
   CHECK_THAT(error_of(good + cell + "[numerics]\nfar_field = \"direct\"\n"),
              Contains("s.toml:18:13") && Contains("leave it \"auto\""));
   CHECK(error_of(good + cell + "[placement]\nkind = \"box\"\ncount = 2\n") == "");

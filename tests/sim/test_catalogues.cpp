@@ -18,11 +18,13 @@ using test::pi;
 TEST_CASE("every flow of the catalogue has the velocity that its meaning says") {
   FlowParameters f;
   f.rate = 1.3, f.curvature = 0.4, f.centreline_velocity = 2, f.angular_velocity = {1, 2, 3}, f.velocity = {4, 5, 6};
+  f.wavelength = 6;
   f.planar = false;
   const double x = 0.3, y = -0.7, z = 1.1;
   const std::map<std::string_view, Vec3> exact{{"none", {0, 0, 0}},
                                                {"shear", {1.3 * z, 0, 0}},
                                                {"poiseuille", {2 - 0.4 * (y * y + z * z), 0, 0}},
+                                               {"streams", {2 * std::cos(pi / 3 * y) * std::cos(pi / 3 * z), 0, 0}},
                                                {"extension", {1.3 * x, -0.65 * y, -0.65 * z}},
                                                {"rotation", {2 * z - 3 * y, 3 * x - z, y - 2 * x}},
                                                {"uniform", {4, 5, 6}}};
