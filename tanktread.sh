@@ -20,9 +20,11 @@ packages=(g++ cmake ninja-build 'pkgconf|pkg-config' libeigen3-dev libfftw3-dev 
 test_packages=(catch2 python3)
 
 # What some tests need: the other back end of OpenGL, trajectories and meshes read back, benchmarks, fuzzing, a processor
-# without AVX2, layout and mistakes of the code, the text of PDF files. Where one of these cannot be installed, its tests are skipped.
+# without AVX2, layout and mistakes of the code, the text of PDF files, several
+# processes for one simulation. Where one of these cannot be installed, its tests are skipped.
 optional_packages=(libosmesa6 libegl1 libgl1-mesa-dri libbenchmark-dev python3-h5py python3-vtk9 clang libclang-rt-dev
-                   qemu-user clang-format clang-tidy poppler-utils)
+                   qemu-user clang-format clang-tidy poppler-utils
+                   libopenmpi-dev openmpi-bin)
 
 usage() {
   sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"

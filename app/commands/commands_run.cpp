@@ -16,7 +16,14 @@
 
 #include "render/gl/context.h"
 
+#include "sim/core/started_ranks.h"
+
 #include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <new>
+#include <thread>
 
 namespace app {
 
@@ -71,6 +78,8 @@ int print_plan(const Settings& settings) {
 }  // namespace
 
 int run(const Options& options) {
+  if (sim::announced_ranks() > 1)
+    throw std::runtime_error("'run' is for one process; under mpirun, 'simulate', then 'render --shard auto'");
   const Settings settings = requested_scene(options);
   const fs::path folder = options.output.empty() ? fs::path("out") / options.inputs.front().stem() : options.output;
   const fs::path trajectory = folder / "trajectory.h5";
@@ -127,7 +136,10 @@ int run(const Options& options) {
   return frames.movie_failed ? 1 : status;
 }
 
-int simulate(const Options& options) {
+namespace {
+
+/// By the first rank, or the only one.
+int simulate_first(const Options& options, const sim::Ranks& ranks) {
   const Settings settings = requested_scene(options);
   const fs::path file =
       options.output.empty() ? fs::path(options.inputs.front().stem().string() + ".h5") : options.output;
@@ -135,9 +147,37 @@ int simulate(const Options& options) {
   if (exists && !options.resume && !options.force)
     throw std::runtime_error(fmt::format("'{}' exists; --resume continues it, --force replaces it", file.string()));
   if (options.dry_run) return print_plan(settings);
-  const SimulationReport report =
-      exists && options.resume ? simulate_further(settings, file, options) : simulate_new(settings, file, options);
+  const SimulationReport report = exists && options.resume ? simulate_further(settings, file, options, {}, {}, ranks)
+                                                           : simulate_new(settings, file, options, {}, {}, ranks);
   return report_end(report, file, options);
+}
+
+/// Ends all ranks after a sentence of this one. What all find, the first says: the others give it the time to.
+[[noreturn]] void end_all(const sim::Ranks& ranks, int status, std::string_view sentence) {
+  constexpr std::chrono::seconds head_start(3);
+  if (!ranks.first()) std::this_thread::sleep_for(head_start);
+  tell(ranks.first() ? std::string(sentence) : fmt::format("process {}: {}", ranks.rank, sentence));
+  ranks.end_all(status);
+  std::abort();
+}
+
+}  // namespace
+
+int simulate(const Options& options) {
+  if (options.dry_run) return simulate_first(options, sim::alone);
+  const sim::Ranks ranks = sim::started_ranks();
+  if (ranks.count == 1) return simulate_first(options, ranks);
+  try {
+    if (ranks.first()) return simulate_first(options, ranks);
+    simulate_along(options, ranks);
+    return 0;
+  } catch (const Interrupted&) {
+    end_all(ranks, interrupted_status, "interrupted");
+  } catch (const std::bad_alloc&) {
+    end_all(ranks, 1, "there is not enough memory");
+  } catch (const std::exception& error) {
+    end_all(ranks, 1, error.what());
+  }
 }
 
 }  // namespace app

@@ -4,6 +4,7 @@
 #include "app/base/message.h"
 #include "app/base/progress.h"
 #include "app/base/version.h"
+#include "app/scene/scene_file.h"
 #include "app/scene/scene_text.h"
 #include "app/scene/trajectory_scene.h"
 
@@ -13,13 +14,32 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <thread>
+
 namespace app {
 
 namespace {
 
+/// What the ranks after the first have to know.
+void share(const sim::Ranks& ranks, sim::SimulationOptions& how) {
+  sim::from_first(ranks, how, [](sim::Parcel& parcel, sim::SimulationOptions& all) {
+    parcel(all.resume), parcel(all.steps), parcel(all.scene_text);
+  });
+}
+
+void set_threads(const Options& options, const sim::Scene& scene, const sim::Ranks& ranks) {
+  int threads = options.jobs > 0 ? options.jobs : scene.numerics.threads;
+  if (threads <= 0 && ranks.neighbours > 1 && !std::getenv("OMP_NUM_THREADS"))
+    threads = std::max(
+        1, std::min(omp_get_num_procs(), static_cast<int>(std::thread::hardware_concurrency()) / ranks.neighbours));
+  if (threads > 0) omp_set_num_threads(threads);
+}
+
 SimulationReport simulate(const Settings& settings, const std::filesystem::path& path, bool resume, bool another_time,
                           std::int64_t first_step, const Options& options, const std::function<void()>& ready,
-                          const ProgressSpan& span) {
+                          const ProgressSpan& span, const sim::Ranks& ranks) {
   const sim::Scene& scene = settings.scene;
   sim::SimulationOptions how;
   how.trajectory = path;
@@ -27,6 +47,7 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   how.another_time = another_time;
   how.steps = options.steps ? std::max<std::int64_t>(0, *options.steps - first_step) : -1;
   how.scene_text = write_scene(settings);
+  share(ranks, how);
   how.program = version();
   how.build = build();
 
@@ -43,9 +64,8 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   };
   observer.on_ready = ready;
   observer.should_stop = [] { return interrupted(); };
-  if (const int threads = options.jobs > 0 ? options.jobs : scene.numerics.threads; threads > 0)
-    omp_set_num_threads(threads);
-  const sim::SimulationOutcome outcome = sim::simulate(scene, how, observer);
+  set_threads(options, scene, ranks);
+  const sim::SimulationOutcome outcome = sim::simulate(scene, how, observer, ranks);
 
   SimulationReport report;
   const sim::TrajectoryReader reader(path);
@@ -59,7 +79,7 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
 }  // namespace
 
 SimulationReport simulate_new(const Settings& settings, const std::filesystem::path& path, const Options& options,
-                              const std::function<void()>& ready, const ProgressSpan& span) {
+                              const std::function<void()>& ready, const ProgressSpan& span, const sim::Ranks& ranks) {
   if (path.has_parent_path()) {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
@@ -67,10 +87,16 @@ SimulationReport simulate_new(const Settings& settings, const std::filesystem::p
       throw std::runtime_error(
           fmt::format("cannot make folder '{}': {}", path.parent_path().string(), error.message()));
   }
-  return simulate(settings, path, false, false, 0, options, ready, span);
+  return simulate(settings, path, false, false, 0, options, ready, span, ranks);
 }
 
 namespace {
+
+/// Lets the other ranks go, which wait for a scene.
+void release(const sim::Ranks& ranks) {
+  sim::SimulationOptions nothing;
+  share(ranks, nothing);
+}
 
 /// What may be different is; the rest is refused.
 std::vector<SceneDifference> checked_differences(const Settings& settings, const sim::TrajectoryReader& reader,
@@ -95,7 +121,8 @@ void check_further(const Settings& settings, const std::filesystem::path& path) 
 }
 
 SimulationReport simulate_further(const Settings& settings, const std::filesystem::path& path, const Options& options,
-                                  const std::function<void()>& ready, const ProgressSpan& span) {
+                                  const std::function<void()>& ready, const ProgressSpan& span,
+                                  const sim::Ranks& ranks) {
   const sim::TrajectoryReader reader(path);
   const bool another_time = !checked_differences(settings, reader, path).empty();
   const sim::Dynamics d = sim::resume_point(reader, path);
@@ -104,11 +131,23 @@ SimulationReport simulate_further(const Settings& settings, const std::filesyste
   // One that was killed before its last words says them now.
   if (done && reader.finished_after(d.step)) {
     sim::remove_dead_drafts(sim::destination(path).parent_path());
+    release(ranks);
     return {states, reader.time(states - 1), true, false, {}};
   }
-  SimulationReport report = simulate(settings, path, true, another_time, d.step, options, ready, span);
+  SimulationReport report = simulate(settings, path, true, another_time, d.step, options, ready, span, ranks);
   report.already_finished = done;
   return report;
+}
+
+void simulate_along(const Options& options, const sim::Ranks& ranks) {
+  sim::SimulationOptions how;
+  share(ranks, how);
+  if (how.scene_text.empty()) return;
+  const Settings settings = parse_scene(how.scene_text, "the scene of the first rank", ".");
+  sim::SimulationObserver observer;
+  observer.should_stop = [] { return interrupted(); };
+  set_threads(options, settings.scene, ranks);
+  sim::simulate(settings.scene, how, observer, ranks);
 }
 
 }  // namespace app

@@ -4,6 +4,8 @@
 #include "app/base/options.h"
 #include "app/scene/settings.h"
 
+#include "sim/core/ranks.h"
+
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -28,13 +30,18 @@ struct ProgressSpan {
 /// A new file; an existing trajectory is replaced. `ready` is called when the scene can be simulated, before anything
 /// is replaced.
 SimulationReport simulate_new(const Settings&, const std::filesystem::path& trajectory, const Options&,
-                              const std::function<void()>& ready = {}, const ProgressSpan& = {});
+                              const std::function<void()>& ready = {}, const ProgressSpan& = {},
+                              const sim::Ranks& = sim::alone);
 /// Checks that the file can be continued with these settings: the same scene, except for time.end and
 /// time.save_every, and not past its end. Throws std::runtime_error that names the keys that differ.
 void check_further(const Settings&, const std::filesystem::path& trajectory);
 /// Continues a file, also to a later end or with other save times from there on, after calling `ready`; does nothing
 /// when it is finished. Files of other scenes are refused.
 SimulationReport simulate_further(const Settings&, const std::filesystem::path& trajectory, const Options&,
-                                  const std::function<void()>& ready = {}, const ProgressSpan& = {});
+                                  const std::function<void()>& ready = {}, const ProgressSpan& = {},
+                                  const sim::Ranks& = sim::alone);
+/// What the ranks after the first do while it does one of the above: they wait for what it reads, take their part of
+/// the work, and touch no file.
+void simulate_along(const Options&, const sim::Ranks&);
 
 }  // namespace app

@@ -69,7 +69,8 @@ FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& b
                       FastParts& parts) {
   std::vector<FastBody> scaled_bodies = bodies;
   std::vector<FastGroup> scaled_groups = groups;
-  std::vector<const Points*> sources, targets;
+  const Points none(3, 0);
+  std::vector<const Points*> sources, targets, all_targets;
   for (FastBody& body : scaled_bodies) {
     body.coarse /= setting.cutoff;
     body.fine /= setting.cutoff;
@@ -78,9 +79,10 @@ FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& b
   }
   for (FastGroup& group : scaled_groups) {
     group.points /= setting.cutoff;
-    targets.push_back(&group.points);
+    all_targets.push_back(&group.points);
+    targets.push_back(group.wanted ? &group.points : &none);
   }
-  const Points y = joined(sources), x = joined(targets);
+  const Points y = joined(sources), x = joined(all_targets);
   const Vec3 low = y.rowwise().minCoeff().cwiseMin(x.rowwise().minCoeff()),
              high = y.rowwise().maxCoeff().cwiseMax(x.rowwise().maxCoeff()), middle = 0.5 * (low + high);
   renew(parts, setting, high - low);
@@ -90,7 +92,7 @@ FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& b
           parts.split,
           parts.mesh,
           parts.mesh->place(y, middle, dual),
-          parts.mesh->place(x, middle, false),
+          parts.mesh->place(joined(targets), middle, false),
           plan_pairs(scaled_bodies, scaled_groups, exclusions, setting.single_precision, cell),
           firsts(sources),
           firsts(targets)};

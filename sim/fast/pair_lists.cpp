@@ -159,6 +159,7 @@ PairLists plan_pairs(const std::vector<FastBody>& bodies, const std::vector<Fast
   for (const Exclusion& e : exclusions) excluded[std::size_t(e.group)].push_back(&e);
   parallel_for(static_cast<int>(groups.size()), [&](int i) {
     const auto g = std::size_t(i);
+    if (!groups[g].wanted) return;
     const int own = groups[g].body;
     PairLists::Group& group = lists.groups[g];
     group.points = groups[g].points;

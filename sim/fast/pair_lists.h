@@ -24,7 +24,8 @@ struct FastStrengths {
 
 struct FastGroup {
   Points points;
-  int body = -1;  ///< whose points they are, which they do not see; -1: of none
+  int body = -1;       ///< whose points they are, which they do not see; -1: of none
+  bool wanted = true;  ///< else no velocities are, and the points only tell how far the targets of all reach
 };
 
 /// Of one geometry.

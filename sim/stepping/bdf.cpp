@@ -133,10 +133,10 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
   Attempt<SuspensionSolve> result = solve(s, suspension, c, r, guess, moving);
   if (!result) return result.rejection();
 
-  Advance a{std::vector<Moved>(n), result->iterations, result->residual};
-  parallel_for(n, [&](int k) {
+  Advance a{std::vector<Moved>(n), result->iterations, result->residual, suspension.division};
+  divided_for(a.division, n, [&](int k) {
     const VesicleDynamics& v = d.vesicles[k];
-    const Membrane& m = suspension.membranes[k];
+    const Membrane& m = *suspension.membranes[k];
     Motion& motion = result->motions[k];
     const Coefficients u{m.order(), motion.velocity.values - frame_velocity(m.body, moving[k]).values};
     Moved moved{{m.order(), expected[k].behind.values + c * u.values}, {}, {}, {}, {}, c, 0};

@@ -153,6 +153,40 @@ std::vector<double> serialised(const Dynamics& d) {
   return std::move(writer.numbers);
 }
 
+void transfer(Parcel& parcel, VesicleDynamics& vesicle) {
+  visit(vesicle, [&]<class Member>(Part, Member& member) {
+    if constexpr (std::is_same_v<Member, Frame>) {
+      transfer_frame(parcel, member);
+    } else if constexpr (std::is_same_v<Member, History>) {
+      std::size_t levels = member.levels.size();
+      parcel(levels);
+      member.levels.resize(levels);
+      for (PastLevel& level : member.levels) visit_level(level, [&](const char*, auto& part) { parcel(part); });
+    } else {
+      parcel(member);
+    }
+  });
+}
+
+void from_first(const Ranks& ranks, Dynamics& d) {
+  std::vector<double> numbers;
+  TrajectoryLayout layout;
+  if (ranks.first()) {
+    numbers = serialised(d);
+    layout.vesicles = int(d.vesicles.size());
+    layout.order = layout.label_order = 0;
+    for (const VesicleDynamics& v : d.vesicles) {
+      layout.order = std::max(layout.order, v.position.order);
+      layout.label_order = std::max(layout.label_order, v.labels.order);
+      layout.tracers = int(v.tracers.rows());
+    }
+  }
+  from_first(ranks, numbers, [&](Parcel& parcel, std::vector<double>& all) {
+    parcel(layout.vesicles), parcel(layout.order), parcel(layout.label_order), parcel(layout.tracers), parcel(all);
+  });
+  if (!ranks.first()) d = deserialised(numbers, layout);
+}
+
 std::size_t resume_numbers(const Dynamics& d, int past_levels) {
   Dynamics full = d;
   for (VesicleDynamics& v : full.vesicles)

@@ -5,6 +5,8 @@
 // walks it.
 #pragma once
 
+#include "sim/core/attempt.h"
+#include "sim/core/ranks.h"
 #include "sim/membrane/membrane.h"
 #include "sim/stepping/history.h"
 #include "sim/surface/labels.h"
@@ -111,6 +113,20 @@ inline constexpr int most_past_levels = 8;
 std::vector<double> serialised(const Dynamics&);
 /// How many numbers serialised() may come to while a scheme looks back over so many levels.
 std::size_t resume_numbers(const Dynamics&, int past_levels);
+/// Of one vesicle, and of what may have been rejected, between ranks.
+void transfer(Parcel&, VesicleDynamics&);
+template <class T, class Transfer>
+void transfer(Parcel& parcel, Attempt<T>& attempt, Transfer&& transfer_value) {
+  bool rejected = !attempt;
+  parcel(rejected);
+  if (!rejected) return transfer_value(parcel, *attempt);
+  Rejection rejection = attempt ? Rejection{} : attempt.rejection();
+  parcel(rejection.reason), parcel(rejection.final);
+  attempt = std::move(rejection);
+}
+/// The first rank's state for all ranks.
+void from_first(const Ranks&, Dynamics&);
+
 /// The inverse; throws std::runtime_error unless the numbers are the whole state of a run that a trajectory of this
 /// layout holds: counts, orders and sizes fit together and within the layout, all numbers are finite, none is left
 /// over.

@@ -1,6 +1,5 @@
 #include "sim/stepping/evaluate.h"
 
-#include "sim/core/parallel.h"
 #include "sim/measures/diagnostics.h"
 #include "sim/membrane/sliding.h"
 #include "sim/stepping/multistep.h"
@@ -45,6 +44,13 @@ VesicleState saved_vesicle(const VesicleDynamics& v, bool first, const Basis& ba
   return out;
 }
 
+void transfer(Parcel& parcel, VesicleState& v) {
+  for (Coefficients* field :
+       {&v.position, &v.velocity, &v.tension, &v.labels, &v.position_before, &v.velocity_before, &v.sliding})
+    parcel(*field);
+  parcel(v.tracers), parcel(v.relabelled), parcel(v.labels_laid), parcel(v.labels_laid_time);
+}
+
 /// Through so many levels goes the polynomial of the step after a state: those of its formula and one more.
 int points_between(const Dynamics& before) { return before.control.order + 2; }
 
@@ -66,10 +72,15 @@ Attempt<State> evaluate(const Model& s, const Dynamics& d) {
     const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity);
     Attempt<SuspensionSolve> result = solve(s, suspension, 0, r, motions(d), frames(d));
     if (!result) return result.rejection();
-    State state{d.step, d.time, {}};
-    for (std::size_t k = 0; k < d.vesicles.size(); ++k)
-      state.vesicles.push_back(saved_vesicle(d.vesicles[k], d.saves == 0, suspension.membranes[k].bases.field,
-                                             suspension.membranes[k].geometry, std::move(result->motions[k])));
+    State state{d.step, d.time, std::vector<VesicleState>(d.vesicles.size())};
+    divided_for(
+        suspension.division, int(d.vesicles.size()),
+        [&](int k) {
+          const Membrane& m = *suspension.membranes[k];
+          state.vesicles[k] =
+              saved_vesicle(d.vesicles[k], d.saves == 0, m.bases.field, m.geometry, std::move(result->motions[k]));
+        },
+        [&](Parcel& parcel, int k) { transfer(parcel, state.vesicles[k]); });
     return state;
   });
 }
@@ -127,9 +138,13 @@ Attempt<std::vector<State>> interpolated(const Model& s, const Dynamics& before,
   return within_domain([&]() -> Attempt<std::vector<State>> {
     const int n = int(after.vesicles.size()), count = int(times.size());
     std::vector<std::vector<Attempt<VesicleState>>> vesicles(n);
-    parallel_for(n, [&](int k) {
+    const auto pass = [&](int k) {
       const Passage passage(s, before.vesicles[k], after.vesicles[k], points_between(before), after.time - before.time);
       for (const double time : times) vesicles[k].push_back(passage.at(after.time - time));
+    };
+    divided_for(divided(s.ranks, n), n, pass, [&](Parcel& parcel, int k) {
+      vesicles[k].resize(std::size_t(count), VesicleState{});
+      for (auto& one : vesicles[k]) transfer(parcel, one, [](Parcel& p, VesicleState& v) { transfer(p, v); });
     });
     std::vector<State> states;
     for (int i = 0; i < count; ++i) {

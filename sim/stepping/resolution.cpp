@@ -48,8 +48,11 @@ std::vector<Coefficients> velocities_of_less(const Model& s, const Dynamics& bef
   const Attempt<Advance> advance = within_domain([&] { return scheme_of(s.scene).advance({s, d, dt, flows}); });
   std::vector<Coefficients> velocities;
   if (!advance) return velocities;
-  for (std::size_t k = 0; k < before.vesicles.size(); ++k)
-    velocities.push_back(resized(advance->vesicles[k].motion.velocity, before.vesicles[k].position.order));
+  velocities.resize(before.vesicles.size());
+  divided_for(
+      advance->division, int(velocities.size()),
+      [&](int k) { velocities[k] = resized(advance->vesicles[k].motion.velocity, before.vesicles[k].position.order); },
+      [&](Parcel& parcel, int k) { parcel(velocities[k]); });
   return velocities;
 }
 
@@ -123,7 +126,7 @@ std::vector<SpaceError> space_errors(const Model& s, const Dynamics& before, con
   for (const VesicleDynamics& v : after.vesicles) largest = std::max(largest, area_radius({v.area, v.volume}));
   constexpr double far = 1;  // from there on no film asks for more than the least of degrees
   const std::vector<double> gaps =
-      gaps_to_neighbours(s.plans, positions(after), far * largest, cell_at(s.scene, after.time));
+      gaps_to_neighbours(s.plans, positions(after), far * largest, cell_at(s.scene, after.time), s.ranks);
   // As a rate it is large where it is large beside the tolerance, however slow the motion.
   const double motion = 2 * allowed_error(s, before, dt) / (dt * tolerance_of(s.scene.time));
   const auto flows = acting_flows(s.scene.flows, before.time, after.time);

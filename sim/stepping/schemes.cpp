@@ -27,13 +27,14 @@ Attempt<Advance> globally_implicit(const StepProblem& problem) {
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity);
   Attempt<SuspensionSolve> result = solve(s, suspension, dt, r, motions(d), frames(d));
   if (!result) return result.rejection();
-  Advance a{{}, result->iterations, result->residual};
+  Advance a{std::vector<Moved>(x.size()), result->iterations, result->residual, suspension.division};
   for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!a.division.mine(int(k))) continue;
     Motion& motion = result->motions[k];
-    const Frame frame = frame_of(suspension.membranes[k], motion.velocity, problem.flows, time);
+    const Frame frame = frame_of(*suspension.membranes[k], motion.velocity, problem.flows, time);
     const double error = euler_error(d.vesicles[k], motion, dt);
     Coefficients moved{x[k].order, x[k].values + dt * motion.velocity.values};
-    a.vesicles.push_back({std::move(moved), std::move(motion), no_sliding(x[k].order), frame, {}, 0, error});
+    a.vesicles[k] = {std::move(moved), std::move(motion), no_sliding(x[k].order), frame, {}, 0, error};
   }
   return a;
 }
@@ -49,28 +50,47 @@ Attempt<Advance> block_scheme(const StepProblem& problem,
   const Suspension suspension = freeze(s, d, d.time, x, motions(d));
   std::vector<Coefficients> r = suspension_forcing(suspension, problem.flows, d.time + dt, s.scene.buoyancy.gravity);
   if (!suspension.interaction.none()) {
-    std::vector<Coefficients> tension;
+    std::vector<Coefficients> tension(x.size());
     for (std::size_t k = 0; k < x.size(); ++k)
-      tension.push_back(implicit_force(suspension.membranes[k], 0, d.vesicles[k].motion));
+      if (const auto& m = suspension.membranes[k]) tension[k] = implicit_force(*m, 0, d.vesicles[k].motion);
     const std::vector<Coefficients> others = interaction_of(suspension, tension, motions(d));
-    for (std::size_t k = 0; k < x.size(); ++k) r[k].values += others[k].values;
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (suspension.membranes[k]) r[k].values += others[k].values;
   }
-  Advance a;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const Membrane& m = suspension.membranes[k];
+  Advance a{std::vector<Moved>(x.size()), 0, 0, suspension.division};
+  std::vector<Solve> solves(x.size());
+  const auto move = [&](int k) {
+    const Membrane& m = *suspension.membranes[k];
     // As in solve_suspension(): the rigid motion solves the homogeneous equations for itself.
     const Matrix rigid = frame_velocity(m.body, d.vesicles[k].frame).values;
     Motion guess = d.vesicles[k].motion;
     guess.velocity.values -= rigid;
     Solve self = solve_self(m, dt, {r[k].order, r[k].values - rigid}, guess, solve_tolerance(s.scene));
-    if (!self.converged) return not_converged(self.residual, self.iterations);
+    if (!self.converged) {
+      solves[k] = std::move(self);
+      return;
+    }
     self.motion.velocity.values += rigid;
-    a.iterations += self.iterations;
-    a.residual = std::max(a.residual, self.residual);
     Coefficients moved{x[k].order, x[k].values + dt * self.motion.velocity.values};
     const Frame frame = frame_of(m, self.motion.velocity, problem.flows, d.time + dt);
     const double error = euler_error(d.vesicles[k], self.motion, dt);
-    a.vesicles.push_back({std::move(moved), std::move(self.motion), no_sliding(x[k].order), frame, {}, 0, error});
+    a.vesicles[k] = {std::move(moved), std::move(self.motion), no_sliding(x[k].order), frame, {}, 0, error};
+    solves[k] = std::move(self);
+  };
+  // One by one: threads share the products of each.
+  const auto move_all = [&](int) {
+    for (int k = 0; k < int(x.size()); ++k)
+      if (a.division.mine(k)) move(k);
+  };
+  divided_for(divided(s.ranks, s.ranks.count), s.ranks.count, move_all, [&](Parcel& parcel, int rank) {
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (!a.division.whole() && a.division.owner[k] == rank)
+        parcel(solves[k].iterations), parcel(solves[k].residual), parcel(solves[k].converged);
+  });
+  for (const Solve& self : solves) {
+    if (!self.converged) return not_converged(self.residual, self.iterations);
+    a.iterations += self.iterations;
+    a.residual = std::max(a.residual, self.residual);
   }
   return a;
 }

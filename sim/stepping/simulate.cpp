@@ -179,8 +179,8 @@ class ResumeClock {
 class Run {
  public:
   Run(const Model& model, const SimulationOptions& options, const SimulationObserver& observer)
-      : model_(model), scene_(model.scene), options_(options), observer_(observer) {
-    noting_ = observer;
+      : model_(model), scene_(model.scene), options_(options), observer_(model.ranks.first() ? observer : silent_) {
+    if (model.ranks.first()) noting_ = observer;
     noting_.on_warning = [this](const std::string& warning) { warn(warning); };
     if (options.resume)
       resume();
@@ -214,8 +214,9 @@ class Run {
       if (auto rejection = begin_anew()) return rejection;
     if (auto rejection = adapt_orders(before, step->record.dt, space)) return rejection;
     warn_of_shapes();
-    if (clock_.due()) write_resume_point();
+    if (file_ && clock_.due()) write_resume_point();
     model_.plans.forget_unused();
+    compare_ranks();
     return std::nullopt;
   }
 
@@ -223,13 +224,17 @@ class Run {
     SimulationOutcome outcome{how, {}, d_.step, d_.time};
     if (how == SimulationEnd::failed) {
       outcome.reason = fmt::format("t = {:.6g}: {}", d_.time, reason);
-      file_->note("stopped at " + outcome.reason);
-      if (file_->last_time() < d_.time)
+      note("stopped at " + outcome.reason);
+      if (any(model_.ranks, file_ && file_->last_time() < d_.time))
         if (const auto rejection = save())  // the last good state
-          file_->note(fmt::format("t = {:.6g}: {}", d_.time, rejection->reason));
+          note(fmt::format("t = {:.6g}: {}", d_.time, rejection->reason));
     }
-    file_->append_steps(records_);
-    file_->finish_resume(serialised(d_), d_.step);
+    if (file_) {
+      file_->append_steps(records_);
+      file_->finish_resume(serialised(d_), d_.step);
+    }
+    // Nobody ends before the file is whole: who is alone with it may need all the time there is.
+    any(model_.ranks, false);
     return outcome;
   }
 
@@ -247,13 +252,19 @@ class Run {
     start_steps(model_, d_);
     const TrajectoryLayout layout = layout_for(scene_, d_);
     mark_saved(d_, first);
-    file_.emplace(
-        TrajectoryWriter::create(options_.trajectory, layout, header, first, serialised(d_), observer_.on_ready));
+    if (model_.ranks.first())
+      file_.emplace(
+          TrajectoryWriter::create(options_.trajectory, layout, header, first, serialised(d_), observer_.on_ready));
     if (observer_.on_state) observer_.on_state(first);
   }
 
-  /// From the last resume point of the file.
+  /// From the last resume point of the file, whoever wrote it.
   void resume() {
+    if (model_.ranks.first()) reopen();
+    from_first(model_.ranks, d_);
+  }
+
+  void reopen() {
     file_.emplace(TrajectoryWriter::resume(options_.trajectory));
     d_ = resumed(*file_, scene_, options_.trajectory);
     if (observer_.on_ready) observer_.on_ready();
@@ -287,7 +298,7 @@ class Run {
   }
 
   void append(const State& state) {
-    file_->append(state, records_);
+    if (file_) file_->append(state, records_);
     records_.clear();
     mark_saved(d_, state);
     if (observer_.on_state) observer_.on_state(state);
@@ -308,12 +319,16 @@ class Run {
     Attempt<Dynamics> changed = in_orders(model_, d_, orders);
     if (!changed) return changed.rejection();
     d_ = std::move(*changed);
-    file_->make_room(layout_for(scene_, d_));
+    if (file_) file_->make_room(layout_for(scene_, d_));
     return std::nullopt;
   }
 
+  void note(const std::string& text) {
+    if (file_) file_->note(text);
+  }
+
   void warn(const std::string& warning) {
-    file_->note(warning);
+    note(warning);
     if (observer_.on_warning) observer_.on_warning(warning);
   }
 
@@ -344,6 +359,19 @@ class Run {
                        limit_warning(model_, d_, worst, errors[worst].here / allowed, found - 1)));
   }
 
+  /// What all ranks compute must be the same on all. Processors of different kinds may round differently.
+  void compare_ranks() const {
+    if (model_.ranks.count == 1) return;
+    std::vector<double> mine{d_.time, d_.dt_limit, double(d_.control.order)};
+    for (const VesicleDynamics& v : d_.vesicles) mine.push_back(v.position.values(0, 0));
+    const auto all = model_.ranks.gathered(mine);
+    for (const auto& theirs : all)
+      if (theirs != all[0])
+        throw std::runtime_error(
+            "the processes have come to different results, as processors of different kinds may; "
+            "start them on machines of one kind");
+  }
+
   void write_resume_point() {
     file_->append_steps(records_);
     records_.clear();
@@ -353,25 +381,27 @@ class Run {
   const Model& model_;
   const Scene& scene_;
   const SimulationOptions& options_;
+  const SimulationObserver silent_{};  ///< of the other ranks
   const SimulationObserver& observer_;
   SimulationObserver noting_;  ///< whose warnings are noted in the file
   Dynamics d_;
-  std::optional<TrajectoryWriter> file_;
-  std::vector<StepRecord> records_;  ///< of steps that are not in the file yet
+  std::optional<TrajectoryWriter> file_;  ///< of the first rank
+  std::vector<StepRecord> records_;       ///< of steps that are not in the file yet
   std::int64_t first_step_ = 0;
   ResumeClock clock_;
 };
 
 }  // namespace
 
-SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options, const SimulationObserver& observer) {
+SimulationOutcome simulate(const Scene& scene, const SimulationOptions& options, const SimulationObserver& observer,
+                           const Ranks& ranks) {
   Plans plans;
-  const Model model = make_model(scene, plans);
+  const Model model = make_model(scene, plans, ranks);
   Run run(model, options, observer);
   while (!run.reached_end()) {
     if (run.reached_limit()) return run.end(SimulationEnd::step_limit);
     if (const auto rejection = run.step()) return run.end(SimulationEnd::failed, rejection->reason);
-    if (observer.should_stop && observer.should_stop()) return run.end(SimulationEnd::interrupted);
+    if (any(ranks, observer.should_stop && observer.should_stop())) return run.end(SimulationEnd::interrupted);
   }
   return run.end(SimulationEnd::finished);
 }

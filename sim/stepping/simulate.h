@@ -18,13 +18,13 @@ struct SimulationOptions {
   std::string program, build;        ///< version and compiler, kept in the file
 };
 
-/// Called from the simulating thread.
+/// Called from the simulating thread, of the first rank where there are several.
 struct SimulationObserver {
   std::function<void(const Dynamics&, const StepRecord&)> on_step;
   std::function<void()> on_ready;  ///< once, before the file appears or changes: the scene can be simulated
   std::function<void(const State&)> on_state;
   std::function<void(const std::string&)> on_warning;
-  std::function<bool()> should_stop;  ///< asked after every step
+  std::function<bool()> should_stop;  ///< asked after every step, on every rank
 };
 
 enum class SimulationEnd {
@@ -42,7 +42,8 @@ struct SimulationOutcome {
 };
 
 /// Throws std::invalid_argument for scenes that cannot be started, std::runtime_error for file errors.
-SimulationOutcome simulate(const Scene&, const SimulationOptions&, const SimulationObserver&);
+/// Several ranks call it with the same scene and options; the first of them reads and writes the file.
+SimulationOutcome simulate(const Scene&, const SimulationOptions&, const SimulationObserver&, const Ranks& = alone);
 
 /// The resume record of a trajectory, checked as strictly as its states. Throws std::runtime_error that names the
 /// file.

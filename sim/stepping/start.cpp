@@ -187,7 +187,7 @@ Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
     d.vesicles.push_back(std::move(v));
   }
   check_cell(s, d);
-  const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, 0));
+  const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, 0), s.ranks);
   if (gap.crossing) throw std::invalid_argument(pair_name(gap) + " overlap");
   if (gap.distance < gap_floor(s, d))
     throw std::invalid_argument(fmt::format("{} are {:.3g} apart, less than numerics.gap_floor = {:.3g}",

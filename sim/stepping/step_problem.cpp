@@ -16,6 +16,17 @@ std::vector<int> upsamplings(const Dynamics& d) {
   return rates;
 }
 
+/// The vesicles among the ranks, by place; assembling the operators of degree p is most of the work, of p^5.
+Division division_of(const Ranks& ranks, std::span<const Coefficients> positions) {
+  std::vector<Vec3> places;
+  std::vector<double> weights;
+  for (const Coefficients& x : positions) {
+    places.emplace_back(x.values.row(0).transpose());
+    weights.push_back(std::pow(x.order + 1, 5));
+  }
+  return divided(ranks, places, weights);
+}
+
 }  // namespace
 
 Rejection not_converged(double residual, int iterations) {
@@ -36,8 +47,8 @@ double size_of(const VesicleDynamics& v, const Matrix& difference) {
   return difference.norm() / std::sqrt(v.area);  // of an orthonormal basis: the mean is over 4 pi, R0^2 = A/(4 pi)
 }
 
-Model make_model(const Scene& scene, Plans& plans) {
-  Model s{scene, plans, {}};
+Model make_model(const Scene& scene, Plans& plans, const Ranks& ranks) {
+  Model s{scene, plans, {}, ranks};
   for (const VesicleParameters& v : scene.vesicles)
     s.materials.push_back({v.viscosity_contrast, v.bending_modulus, v.density_difference});
   return s;
@@ -50,8 +61,9 @@ double gap_floor(const Model& s, const Dynamics& d) {
 Suspension freeze(const Model& s, const Dynamics& d, double time, std::span<const Coefficients> frozen,
                   std::span<const Motion> likely) {
   const NumericsParameters& n = s.scene.numerics;
-  const SuspensionOptions options =
+  SuspensionOptions options =
       suspension_options(n, smallest_radius(sizes(d)), solve_tolerance(s.scene), cell_at(s.scene, time));
+  options.interaction.division = division_of(s.ranks, frozen);
   std::vector<Coefficients> expected;
   if (n.implicit_tension)
     for (const Motion& m : likely) expected.push_back(m.tension);
@@ -65,12 +77,14 @@ Attempt<SuspensionSolve> solve(const Model& s, const Suspension& suspension, dou
   const Preconditioner kind =
       s.scene.numerics.preconditioner == "block" ? Preconditioner::block : Preconditioner::spectral;
   std::vector<RigidMotion> rigid;
-  for (std::size_t k = 0; k < frames.size(); ++k) rigid.push_back(frames[k].at(suspension.membranes[k].body.centre));
+  for (std::size_t k = 0; k < frames.size(); ++k)
+    rigid.push_back(suspension.membranes[k] ? frames[k].at(suspension.membranes[k]->body.centre) : RigidMotion{});
   double tolerance = solve_tolerance(s.scene);
   constexpr double stiff_sphere = 1e-9;  // the tension that keeps a sphere round hides smaller residuals
-  for (const Membrane& m : suspension.membranes)
-    if (m.pinned && !s.scene.numerics.gmres_tolerance && steps_adapt(s.scene.time))
-      tolerance = std::max(tolerance, stiff_sphere);
+  bool pinned = false;
+  for (const auto& m : suspension.membranes) pinned = pinned || (m && m->pinned);
+  if (any(s.ranks, pinned) && !s.scene.numerics.gmres_tolerance && steps_adapt(s.scene.time))
+    tolerance = std::max(tolerance, stiff_sphere);
   SuspensionSolve result = solve_suspension(suspension, c, r, guess, tolerance, kind, rigid);
   if (!result.converged) return not_converged(result.residual, result.iterations);
   return result;

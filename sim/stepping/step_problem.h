@@ -14,8 +14,9 @@ struct Model {
   const Scene& scene;
   Plans& plans;
   std::vector<Material> materials;
+  const Ranks& ranks;  ///< who share the work
 };
-Model make_model(const Scene&, Plans&);
+Model make_model(const Scene&, Plans&, const Ranks& = alone);
 
 /// A step to take: from a state, over dt, in the flows that act during it.
 struct StepProblem {
@@ -40,9 +41,10 @@ struct Moved {
 };
 
 struct Advance {
-  std::vector<Moved> vesicles;
+  std::vector<Moved> vesicles;  ///< of this rank
   int iterations = 0;
   double residual = 0;
+  Division division = {};  ///< whose vesicles are which
 };
 
 /// The reason of a linear solve that has not converged.

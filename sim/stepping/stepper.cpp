@@ -153,7 +153,7 @@ std::optional<Rejection> finish_vesicles(const Model& s, Step& step, Advance& ad
   step.record.vesicles.resize(n);
   std::vector<std::optional<Rejection>> rejections(n);
   std::vector<std::vector<double>> errors(n);
-  parallel_for(n, [&](int k) {
+  const auto finish = [&](int k) {
     const Attempt<Finished> finished =
         within_domain([&] { return finish_vesicle(s, d.vesicles[k], std::move(advance.vesicles[k]), d, dt); });
     if (finished) {
@@ -162,6 +162,17 @@ std::optional<Rejection> finish_vesicles(const Model& s, Step& step, Advance& ad
     } else {
       rejections[k] = finished.rejection();
     }
+  };
+  divided_for(advance.division, n, finish, [&](Parcel& parcel, int k) {
+    bool rejected = rejections[k].has_value();
+    parcel(rejected);
+    if (rejected) {
+      if (!rejections[k]) rejections[k].emplace();
+      return parcel(rejections[k]->reason), parcel(rejections[k]->final);
+    }
+    transfer(parcel, d.vesicles[k]);
+    parcel(errors[k]);
+    visit(step.record.vesicles[k], [&](auto&&, auto&&, double& column) { parcel(column); });
   });
   for (const auto& rejection : rejections)
     if (rejection) return rejection;
@@ -202,7 +213,7 @@ Attempt<Step> take_step(const Model& s, const Dynamics& before, double dt) {
   d.time = before.time + dt;
   d.step = before.step + 1;
   if (auto rejection = finish_vesicles(s, step, *advance, dt)) return *rejection;
-  const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, d.time));
+  const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, d.time), s.ranks);
   if (gap.crossing || gap.distance < gap_floor(s, d)) return too_close(s, before, gap);
   if (std::isfinite(gap.distance)) d.control.gap = gap.distance;
   record.step = double(d.step);

@@ -87,7 +87,7 @@ std::vector<ThinFilm> thin_films(const Model& s, const Dynamics& d) {
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
     if (const ThinFilm film = film_of(k, d.control.gap); thin(film)) reach = std::max(reach, d.control.gap / film.gap);
   if (reach == 0) return films;
-  const std::vector<double> gaps = gaps_to_neighbours(s.plans, positions(d), reach, cell_at(s.scene, d.time));
+  const std::vector<double> gaps = gaps_to_neighbours(s.plans, positions(d), reach, cell_at(s.scene, d.time), s.ranks);
   for (std::size_t k = 0; k < gaps.size(); ++k)
     if (const ThinFilm film = film_of(k, gaps[k]); thin(film)) films.push_back(film);
   std::stable_sort(films.begin(), films.end(),

@@ -181,14 +181,18 @@ Search search_among(Plans& plans, std::span<const Coefficients> positions, const
 }
 
 /// Of all pairs whose boxes are no farther apart than `reach`.
-std::vector<Gap> gaps_of_pairs(const Search& search, double reach) {
+std::vector<Gap> gaps_of_pairs(const Search& search, double reach, const Ranks& ranks) {
   const auto pairs = near_images(search.boxes, reach, search.cell);
   std::vector<Gap> gaps(pairs.size());
-  parallel_for(int(pairs.size()), [&](int k) {
+  const auto look = [&](int k) {
     const ImagePair& pair = pairs[k];
     const Surface &first = *search.surfaces[pair.first], &second = *search.surfaces[pair.second];
     gaps[k] = pair.image.isZero() ? gap_between(second, first, pair.first, pair.second)
                                   : gap_between(moved(second, pair.shift(search.cell)), first, pair.first, pair.second);
+  };
+  divided_for(divided(ranks, int(pairs.size())), int(pairs.size()), look, [&](Parcel& parcel, int k) {
+    Gap& gap = gaps[k];
+    parcel(gap.distance), parcel(gap.first), parcel(gap.second), parcel(gap.crossing);
   });
   return gaps;
 }
@@ -200,24 +204,24 @@ std::string pair_name(const Gap& gap) {
                                  : fmt::format("vesicles {} and {}", gap.first, gap.second);
 }
 
-Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions, const CellSides& cell) {
+Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions, const CellSides& cell, const Ranks& ranks) {
   Gap best{std::numeric_limits<double>::infinity(), -1, -1, false};
   if (positions.empty() || (positions.size() < 2 && !cell)) return best;
   const Search search = search_among(plans, positions, cell);
   // Pairs whose boxes are farther apart than the least gap found so far cannot have a smaller one.
   for (double reach = search.spacing;; reach *= 4) {
     const bool last = reach > search.extent;
-    for (const Gap& gap : gaps_of_pairs(search, search.cell ? std::min(reach, search.extent) : reach))
+    for (const Gap& gap : gaps_of_pairs(search, search.cell ? std::min(reach, search.extent) : reach, ranks))
       if (gap.distance < best.distance) best = gap;
     if (best.distance <= reach || last) return best;
   }
 }
 
 std::vector<double> gaps_to_neighbours(Plans& plans, std::span<const Coefficients> positions, double reach,
-                                       const CellSides& cell) {
+                                       const CellSides& cell, const Ranks& ranks) {
   std::vector<double> least(positions.size(), std::numeric_limits<double>::infinity());
   if (positions.size() < 2 && !cell) return least;
-  for (const Gap& gap : gaps_of_pairs(search_among(plans, positions, cell), reach))
+  for (const Gap& gap : gaps_of_pairs(search_among(plans, positions, cell), reach, ranks))
     for (const int k : {gap.first, gap.second}) least[k] = std::min(least[k], gap.distance);
   return least;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/core/cells.h"
+#include "sim/core/ranks.h"
 #include "sim/layers/near.h"
 #include "sim/layers/plans.h"
 
@@ -20,10 +21,11 @@ struct Gap {
 std::string pair_name(const Gap&);
 /// Over all pairs; infinite for a single vesicle in unbounded fluid. Overlap is found by the solid angle of each
 /// surface at the points of the other, so a vesicle wholly inside another is found too.
-Gap smallest_gap(Plans&, std::span<const Coefficients> positions, const CellSides& = {});
+/// Ranks divide the pairs.
+Gap smallest_gap(Plans&, std::span<const Coefficients> positions, const CellSides& = {}, const Ranks& = alone);
 
 /// From every vesicle to the nearest other; where that is farther than `reach`, any value above it, also infinity.
 std::vector<double> gaps_to_neighbours(Plans&, std::span<const Coefficients> positions, double reach,
-                                       const CellSides& = {});
+                                       const CellSides& = {}, const Ranks& = alone);
 
 }  // namespace sim

@@ -120,7 +120,7 @@ FastInteraction plan_fast(Plans& plans, const Interaction& w, std::span<const Co
     fast.spread[k] = make_sources(*fast.spread_basis[k], positions[k]);
     bodies[k] = {fast.spread[k].points.transpose(), w.sources[k].points.transpose(),
                  coarse_limit(tolerance) * fast.spread[k].spacing.maxCoeff()};
-    groups[k] = {w.far.groups[k].points.transpose(), i};
+    groups[k] = {(*w.far.sources)[k].points.transpose(), i, w.division.mine(i)};
   });
   const bool dual = std::any_of(w.dual.begin(), w.dual.end(), [](char d) { return d != 0; });
   fast.sum = plans.with_fast_parts(
@@ -137,6 +137,7 @@ FastInteraction plan_fast(Plans& plans, const Interaction& w, std::span<const Co
 Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positions, std::span<const Material> materials,
                              const InteractionOptions& options) {
   Interaction w;
+  w.division = options.division;
   const int n = int(positions.size());
   if (n == 0 || (n < 2 && !options.far.cell)) return w;
   std::vector<const RotationPlan*> rotations;
@@ -154,7 +155,7 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
     coarse[i] = make_sources(*w.target_basis[i], positions[i]);
   });
   std::vector<TargetGroup> groups;
-  for (int i = 0; i < n; ++i) groups.push_back({coarse[i].points, i});
+  for (int i = 0; i < n; ++i) groups.push_back({w.division.mine(i) ? coarse[i].points : Matrix(0, 3), i});
   w.far = plan_far_field(std::make_shared<const std::vector<Sources>>(std::move(coarse)), std::move(groups));
   std::vector<int> orders;
   for (const Coefficients& x : positions) orders.push_back(x.order);
@@ -162,8 +163,11 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
   const std::optional<FastChoice> fast = choose_fast(orders, *w.far.sources, w.sources, dual, options.far);
   const bool only_near = fast.has_value();
   w.pairs = candidates(w, options, only_near);
-  parallel_for(int(w.pairs.size()),
-               [&](int k) { fill(w.pairs[k], w, positions, *rotations[w.pairs[k].source], options, only_near); });
+  Division of_pairs{w.division.ranks, {}};
+  if (!w.division.whole())
+    for (const PairPlan& pair : w.pairs) of_pairs.owner.push_back(w.division.owner[pair.target]);
+  divided_for(of_pairs, int(w.pairs.size()),
+              [&](int k) { fill(w.pairs[k], w, positions, *rotations[w.pairs[k].source], options, only_near); });
   std::erase_if(w.pairs, [](const PairPlan& pair) { return pair.fine.empty() && pair.near.empty(); });
   const std::vector<Exclusion> excluded = exclusions(w.pairs);
   if (fast)
@@ -219,6 +223,7 @@ std::vector<Coefficients> induced_velocity(const Interaction& w, std::span<const
   }
   std::vector<Coefficients> result(n);
   parallel_for(n, [&](int i) {
+    if (!w.division.mine(i)) return;
     const Matrix& targets = w.far.groups[i].points;
     auto pair = std::partition_point(w.pairs.begin(), w.pairs.end(), [i](const PairPlan& p) { return p.target < i; });
     for (; pair != w.pairs.end() && pair->target == i; ++pair) {
@@ -252,7 +257,8 @@ std::vector<Coefficients> repulsion(const Interaction& w, double strength, doubl
           (w.far.groups[pair.target].points.row(row) - nearest.position.transpose()).normalized();
     }
   std::vector<Coefficients> result;
-  for (std::size_t i = 0; i < n; ++i) result.push_back(w.target_basis[i]->analyze(force[i]));
+  for (std::size_t i = 0; i < n; ++i)
+    result.push_back(w.division.mine(int(i)) ? w.target_basis[i]->analyze(force[i]) : Coefficients{});
   return result;
 }
 

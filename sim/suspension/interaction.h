@@ -7,6 +7,7 @@
 // targets from densities on sources".
 #pragma once
 
+#include "sim/core/ranks.h"
 #include "sim/layers/far_field.h"
 #include "sim/layers/near.h"
 #include "sim/membrane/block.h"
@@ -21,6 +22,7 @@ struct InteractionOptions {
   double near_spacings = 4;    ///< targets nearer than this many local spacings use the near rule
   double coarse_spacings = 6;  ///< targets farther than this many spacings of the coarse grid use that grid; 0: none
   FarOptions far = {};
+  Division division = {};  ///< of the vesicles, among ranks: each plans and evaluates what its own ones feel
 };
 
 /// What one vesicle makes at those targets of another that are excluded from the far field: by the smooth rule on its
@@ -51,6 +53,7 @@ struct Interaction {
   std::vector<Sources> sources;                 ///< on the fine grids
   std::vector<PairPlan> pairs;                  ///< by target, then source
   std::vector<char> dual;                       ///< per source vesicle: its viscosity contrast differs from 1
+  Division division;                            ///< as the options have it
   bool none() const { return sources.empty(); }
 };
 
@@ -58,12 +61,13 @@ struct Interaction {
 Interaction plan_interaction(Plans&, std::span<const Coefficients> positions, std::span<const Material>,
                              const InteractionOptions&);
 
-/// Velocity that all other vesicles, and in a periodic cell all images, induce on each, projected on its degree.
+/// Velocity that all other vesicles, and in a periodic cell all images, induce on each, projected on its degree;
+/// of this rank's vesicles, from the densities of all.
 std::vector<Coefficients> induced_velocity(const Interaction&, std::span<const Densities>);
 
 /// Optional short-range repulsion: traction strength exp(-gap/range) on the points of each vesicle that are near
 /// another, away from its nearest point. Force densities as coefficients of degree p; zero beyond the range of the
-/// near rule (four spacings of its source grid), and when that rule is off.
+/// near rule (four spacings of its source grid), and when that rule is off; of this rank's vesicles.
 std::vector<Coefficients> repulsion(const Interaction&, double strength, double range);
 
 }  // namespace sim

@@ -77,10 +77,10 @@ std::vector<Load> solved_loads(Plans& plans, const Scene& scene, const State& st
   // mostly its own, and coupled solves sum over all pairs in each iteration.
   for (int sweep = 0; sweep < (others_act ? 3 : 1); ++sweep) {
     std::vector<Coefficients> forces(n), others;
-    for (int i = 0; i < n; ++i) forces[i] = moving_force(s.membranes[i], motions[i]);
+    for (int i = 0; i < n; ++i) forces[i] = moving_force(*s.membranes[i], motions[i]);
     if (others_act) others = interaction_of(s, forces, motions);
     parallel_for(n, [&](int i) {
-      const Membrane& m = s.membranes[i];
+      const Membrane& m = *s.membranes[i];
       // The rigid motion solves the homogeneous equations for itself.
       const Matrix rigid = rigid_velocity(m.body, rigid_part(m.body, motions[i].velocity)).values;
       Coefficients forcing{m.order(), r[i].values - rigid};
@@ -95,7 +95,7 @@ std::vector<Load> solved_loads(Plans& plans, const Scene& scene, const State& st
   }
   std::vector<Load> loads(n);
   parallel_for(n, [&](int i) {
-    const Membrane& m = s.membranes[i];
+    const Membrane& m = *s.membranes[i];
     Coefficients force = known_force(m, scene.buoyancy.gravity);
     force.values += moving_force(m, motions[i]).values;
     if (!s.repulsion.empty()) force.values += s.repulsion[i].values;

@@ -87,26 +87,31 @@ Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, 
                                       pinned.empty() ? std::nullopt : pinned[i]));
   };
   if (n == 1) {
-    freeze(0);  // the threads then share the assembly
+    if (options.interaction.division.mine(0)) freeze(0);  // the threads then share the assembly
   } else {
-    parallel_for(n, freeze);
+    divided_for(options.interaction.division, n, freeze);
   }
-  Suspension s{{}, plan_interaction(plans, positions, materials, options.interaction), {}};
+  Suspension s{
+      {}, plan_interaction(plans, positions, materials, options.interaction), {}, options.interaction.division};
   if (!s.interaction.none() && options.repulsion_strength > 0)
     s.repulsion = repulsion(s.interaction, options.repulsion_strength, options.repulsion_range);
-  for (auto& m : frozen) s.membranes.push_back(std::move(*m));
+  s.membranes = std::move(frozen);
   return s;
 }
 
 std::vector<Coefficients> interaction_of(const Suspension& s, std::span<const Coefficients> forces,
                                          std::span<const Motion> motions) {
-  std::vector<Densities> densities;
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    const Coefficients& f = forces[k];
-    densities.push_back({f, {f.order, Matrix::Zero(f.values.rows(), 3)}});
-    if (const Membrane& m = s.membranes[k]; !motions.empty())
-      densities[k].dual = dual_density(m.body, m.material.viscosity_contrast, motions[k].velocity);
-  }
+  const int n = int(forces.size());
+  std::vector<Densities> densities(n);
+  divided_for(
+      s.division, n,
+      [&](int k) {
+        const Coefficients& f = forces[k];
+        densities[k] = {f, {f.order, Matrix::Zero(f.values.rows(), 3)}};
+        if (const Membrane& m = *s.membranes[k]; !motions.empty())
+          densities[k].dual = dual_density(m.body, m.material.viscosity_contrast, motions[k].velocity);
+      },
+      [&](Parcel& parcel, int k) { parcel(densities[k].force), parcel(densities[k].dual); });
   return induced_velocity(s.interaction, densities);
 }
 
@@ -114,8 +119,8 @@ std::vector<Coefficients> suspension_forcing(const Suspension& s, std::span<cons
                                              const Vec3& gravity, std::span<const Coefficients> displacements) {
   const int n = int(s.membranes.size());
   std::vector<Coefficients> forces(n), r(n);
-  parallel_for(n, [&](int i) {
-    const Membrane& m = s.membranes[i];
+  divided_for(s.division, n, [&](int i) {
+    const Membrane& m = *s.membranes[i];
     forces[i] = displacements.empty() ? known_force(m, gravity) : known_force(m, gravity, displacements[i]);
     if (!s.repulsion.empty()) forces[i].values += s.repulsion[i].values;
     r[i] = m.bases.field.analyze(background_velocity(flows, time, m.geometry.x.value));
@@ -123,7 +128,8 @@ std::vector<Coefficients> suspension_forcing(const Suspension& s, std::span<cons
   });
   if (!s.interaction.none()) {
     const std::vector<Coefficients> others = interaction_of(s, forces);
-    for (int i = 0; i < n; ++i) r[i].values += others[i].values;
+    for (int i = 0; i < n; ++i)
+      if (s.division.mine(i)) r[i].values += others[i].values;
   }
   return r;
 }
@@ -153,28 +159,37 @@ Vector join(const std::vector<Vector>& parts) {
 }
 
 /// Left-hand side of the coupled system.
-Vector apply_blocks(std::span<const Block> blocks, const Interaction& interaction, const Vector& y) {
+Vector apply_blocks(std::span<const Block> blocks, const Interaction& interaction, const Division& division,
+                    const Vector& y) {
   const int n = int(blocks.size());
   const std::vector<Vector> parts = split(blocks, y);
   std::vector<Densities> densities(n);
   std::vector<Coefficients> velocity(n);
-  parallel_for(n, [&](int i) {
-    Trial trial = blocks[i].trial(parts[i]);
-    densities[i] = std::move(trial.densities);
-    velocity[i] = std::move(trial.own_velocity);
-  });
+  divided_for(
+      division, n,
+      [&](int i) {
+        Trial trial = blocks[i].trial(parts[i]);
+        densities[i] = std::move(trial.densities);
+        velocity[i] = std::move(trial.own_velocity);
+      },
+      [&](Parcel& parcel, int i) { parcel(densities[i].force), parcel(densities[i].dual); });
   if (!interaction.none()) {
     const std::vector<Coefficients> others = induced_velocity(interaction, densities);
-    for (int i = 0; i < n; ++i) velocity[i].values += others[i].values;
+    for (int i = 0; i < n; ++i)
+      if (division.mine(i)) velocity[i].values += others[i].values;
   }
   std::vector<Vector> rows(n);
-  parallel_for(n, [&](int i) { rows[i] = blocks[i].rows(parts[i], velocity[i]); });
+  divided_for(
+      division, n, [&](int i) { rows[i] = blocks[i].rows(parts[i], velocity[i]); },
+      [&](Parcel& parcel, int i) { parcel(rows[i]); });
   return join(rows);
 }
 
-Vector precondition_blocks(std::span<const Block> blocks, const Vector& y) {
+Vector precondition_blocks(std::span<const Block> blocks, const Division& division, const Vector& y) {
   std::vector<Vector> parts = split(blocks, y);
-  parallel_for(int(blocks.size()), [&](int i) { parts[i] = blocks[i].precondition(parts[i]); });
+  divided_for(
+      division, int(blocks.size()), [&](int i) { parts[i] = blocks[i].precondition(parts[i]); },
+      [&](Parcel& parcel, int i) { parcel(parts[i]); });
   return join(parts);
 }
 
@@ -189,23 +204,26 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
   std::vector<Coefficients> rigid(n);
   // A rigid motion solves the homogeneous equations for itself: (39) maps it to itself and every other vesicle to
   // nothing.
-  parallel_for(n, [&](int i) {
-    const Membrane& m = s.membranes[i];
+  const auto prepare = [&](int i) {
+    const Membrane& m = *s.membranes[i];
     blocks[i] = vesicle_block(m, c, kind);
     rigid[i] = frames.empty() ? Coefficients{m.order(), Matrix::Zero(coefficient_count(m.order()), 3)}
                               : rigid_velocity(m.body, frames[i]);
     right[i] = system_right(m, {m.order(), forcing[i].values - rigid[i].values});
     start[i] = packed({{m.order(), guess[i].velocity.values - rigid[i].values}, guess[i].tension});
     if (m.pinned) start[i][start[i].size() - coefficient_count(m.order())] = 0;
-  });
+  };
+  divided_for(s.division, n, prepare,
+              [&](Parcel& parcel, int i) { parcel(blocks[i].size), parcel(right[i]), parcel(start[i]); });
   constexpr int most_iterations = 300;
-  const GmresResult result = gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, y); },
-                                   [&](const Vector& y) { return precondition_blocks(blocks, y); }, join(right),
-                                   join(start), tolerance, most_iterations);
-  SuspensionSolve solve{{}, result.iterations, result.residual, result.converged};
+  const GmresResult result = gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, s.division, y); },
+                                   [&](const Vector& y) { return precondition_blocks(blocks, s.division, y); },
+                                   join(right), join(start), tolerance, most_iterations);
+  SuspensionSolve solve{std::vector<Motion>(n), result.iterations, result.residual, result.converged};
   const std::vector<Vector> parts = split(blocks, result.solution);
   for (int i = 0; i < n; ++i) {
-    solve.motions.push_back(unpacked(parts[i], s.membranes[i].order()));
+    if (!s.division.mine(i)) continue;
+    solve.motions[i] = unpacked(parts[i], s.membranes[i]->order());
     solve.motions[i].velocity.values += rigid[i].values;
   }
   return solve;

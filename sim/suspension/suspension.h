@@ -7,9 +7,10 @@
 namespace sim {
 
 struct Suspension {
-  std::vector<Membrane> membranes;
+  std::vector<std::optional<Membrane>> membranes;  ///< of this rank's vesicles
   Interaction interaction;
-  std::vector<Coefficients> repulsion;  ///< force density on each vesicle; empty: none
+  std::vector<Coefficients> repulsion;  ///< force density on each vesicle of this rank; empty: none
+  Division division;                    ///< of the vesicles among ranks
 };
 
 struct SuspensionOptions {
@@ -35,7 +36,8 @@ std::vector<std::optional<PinnedTension>> pinned_tensions(Plans&, std::span<cons
 double area_radius(const AreaVolume&);
 double smallest_radius(std::span<const AreaVolume> sizes);
 
-/// Geometry and operators of all vesicles at x*; expected tensions: see freeze_membrane().
+/// Geometry and operators of all vesicles at x*, each on its rank (options.interaction.division); expected tensions:
+/// see freeze_membrane().
 Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const Coefficients> positions,
                              std::span<const int> upsamplings, const SuspensionOptions&,
                              std::span<const Coefficients> expected_tensions = {},
@@ -47,7 +49,7 @@ SuspensionOptions suspension_options(const NumericsParameters&, double smallest_
 
 /// r of (39a) for every vesicle: background flow, and the velocities induced by bending at the histories, buoyancy
 /// and repulsion of all vesicles, itself included. `displacements`: histories minus frozen positions, none when they
-/// coincide.
+/// coincide. As with all that is given by vesicle here, those of other ranks stay empty.
 std::vector<Coefficients> suspension_forcing(const Suspension&, std::span<const FlowParameters>, double time,
                                              const Vec3& gravity, std::span<const Coefficients> displacements = {});
 
@@ -64,7 +66,7 @@ struct SuspensionSolve {
 };
 /// Solves the coupled system from a guess. `frames`: for each vesicle a rigid motion close to its own. The unknown is
 /// the rest of the motion, so the tolerance is relative to the rest, and displacements over the time c are those of
-/// the rest.
+/// the rest. Each rank gets the motions of its own vesicles.
 SuspensionSolve solve_suspension(const Suspension&, double c, std::span<const Coefficients> forcing,
                                  std::span<const Motion> guess, double tolerance, Preconditioner,
                                  std::span<const RigidMotion> frames = {});
