@@ -20,8 +20,8 @@ packages=(g++ cmake ninja-build 'pkgconf|pkg-config' libeigen3-dev libfftw3-dev 
 test_packages=(catch2 python3)
 
 # What some tests need: the other back end of OpenGL, trajectories and meshes read back, benchmarks, fuzzing, a processor
-# without AVX2, layout and mistakes of the code, the text of PDF files, several
-# processes for one simulation. Where one of these cannot be installed, its tests are skipped.
+# without AVX2, layout and mistakes of the code, the text of PDF files, several processes for one simulation. Where one of
+# these cannot be installed, its tests are skipped.
 optional_packages=(libosmesa6 libegl1 libgl1-mesa-dri libbenchmark-dev python3-h5py python3-vtk9 clang libclang-rt-dev
                    qemu-user clang-format clang-tidy poppler-utils
                    libopenmpi-dev openmpi-bin)
@@ -144,7 +144,10 @@ case "${1:-}" in
   test)
     shift
     install_packages "${packages[@]}" "${test_packages[@]}" -- "${optional_packages[@]}"
-    configure -DBUILD_TESTING=ON
+    # Several processes for one simulation are tested where there is MPI.
+    mpi=OFF
+    if command -v mpicxx >/dev/null && command -v mpirun >/dev/null; then mpi=ON; fi
+    configure -DBUILD_TESTING=ON -DTANKTREAD_MPI=$mpi
     cmake --build "$build" >&2
     ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "$@"
     ;;
