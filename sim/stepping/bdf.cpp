@@ -1,6 +1,6 @@
 #include "sim/stepping/bdf.h"
 
-#include "sim/core/parallel.h"
+#include "sim/core/divided.h"
 #include "sim/membrane/sliding.h"
 #include "sim/stepping/multistep.h"
 

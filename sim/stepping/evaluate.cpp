@@ -1,5 +1,6 @@
 #include "sim/stepping/evaluate.h"
 
+#include "sim/core/divided.h"
 #include "sim/measures/diagnostics.h"
 #include "sim/membrane/sliding.h"
 #include "sim/stepping/multistep.h"

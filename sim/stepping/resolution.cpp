@@ -1,5 +1,6 @@
 #include "sim/stepping/resolution.h"
 
+#include "sim/core/divided.h"
 #include "sim/measures/diagnostics.h"
 #include "sim/membrane/cell.h"
 #include "sim/membrane/flows.h"

@@ -1,5 +1,7 @@
 #include "sim/stepping/schemes.h"
 
+#include "sim/core/divided.h"
+
 #include <fmt/format.h>
 
 #include <cmath>

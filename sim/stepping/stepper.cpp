@@ -1,6 +1,6 @@
 #include "sim/stepping/stepper.h"
 
-#include "sim/core/parallel.h"
+#include "sim/core/divided.h"
 #include "sim/measures/diagnostics.h"
 #include "sim/membrane/cell.h"
 #include "sim/sphere/norms.h"

@@ -1,6 +1,6 @@
 #include "sim/suspension/gap.h"
 
-#include "sim/core/parallel.h"
+#include "sim/core/divided.h"
 #include "sim/layers/far_field.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "sim/suspension/interaction.h"
 
-#include "sim/core/parallel.h"
+#include "sim/core/divided.h"
 #include "sim/layers/kernels.h"
 
 #include <fmt/format.h>

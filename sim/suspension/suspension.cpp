@@ -1,6 +1,6 @@
 #include "sim/suspension/suspension.h"
 
-#include "sim/core/parallel.h"
+#include "sim/core/divided.h"
 
 #include <algorithm>
 #include <cmath>

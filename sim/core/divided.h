@@ -1,0 +1,55 @@
+// Loops over independent items that ranks, and the threads of each, divide.
+#pragma once
+
+#include "sim/core/parallel.h"
+#include "sim/core/ranks.h"
+
+namespace sim {
+
+/// body(k) for the items of this rank; then `transfer(parcel, k)` carries what has become of item k from its rank to
+/// the others. std::domain_error, by which a shape is refused, is thrown by all ranks where one throws it, that of the
+/// smallest k; any other exception is one of this rank.
+template <class Body, class Transfer>
+void divided_for(const Division& division, int n, Body&& body, Transfer&& transfer) {
+  if (division.whole()) return parallel_for(n, body);
+  const Ranks& ranks = *division.ranks;
+  std::vector<int> items;
+  for (int k = 0; k < n; ++k)
+    if (division.mine(k)) items.push_back(k);
+  std::vector<std::optional<std::string>> objections(std::size_t(n), std::nullopt);
+  const auto attempt = [&](int k) {
+    try {
+      body(k);
+    } catch (const std::domain_error& error) {
+      objections[std::size_t(k)] = error.what();
+    }
+  };
+  if (items.size() == 1)
+    attempt(items[0]);  // its own loops get the threads
+  else
+    parallel_for(int(items.size()), [&](int i) { attempt(items[std::size_t(i)]); });
+  const auto carry = [&](Parcel& parcel, int k) {
+    auto& objection = objections[std::size_t(k)];
+    bool refused = objection.has_value();
+    parcel(refused);
+    if (!refused) return transfer(parcel, k);
+    if (!objection) objection.emplace();
+    parcel(*objection);
+  };
+  Parcel mine;
+  for (const int k : items) carry(mine, k);
+  const auto all = ranks.gathered(mine.numbers());
+  std::vector<Parcel> theirs;
+  for (const auto& one : all) theirs.emplace_back(one);
+  for (int k = 0; k < n; ++k)
+    if (!division.mine(k)) carry(theirs[std::size_t(division.owner[std::size_t(k)])], k);
+  for (const auto& objection : objections)
+    if (objection) throw std::domain_error(*objection);
+}
+/// Where each rank keeps what has become of its own items.
+template <class Body>
+void divided_for(const Division& division, int n, Body&& body) {
+  divided_for(division, n, body, [](Parcel&, int) {});
+}
+
+}  // namespace sim

@@ -1,0 +1,150 @@
+// Several ranks, here threads of one process: what each has after a collective call.
+#include "sim/core/divided.h"
+#include "sim/stepping/stepper.h"
+#include "surfaces.h"
+#include "tests/support/catch.h"
+
+#include <barrier>
+#include <thread>
+
+using namespace sim;
+
+namespace {
+
+/// f(ranks) on so many threads at once, each a rank of its own.
+template <class F>
+void as_ranks(int count, F&& f) {
+  std::barrier meeting(count);
+  std::vector<std::vector<double>> table(static_cast<std::size_t>(count));
+  std::vector<std::thread> threads;
+  for (int rank = 0; rank < count; ++rank)
+    threads.emplace_back([&, rank] {
+      Ranks ranks;
+      ranks.rank = rank;
+      ranks.count = count;
+      ranks.gathered = [&, rank](std::span<const double> mine) {
+        table[std::size_t(rank)].assign(mine.begin(), mine.end());
+        meeting.arrive_and_wait();
+        auto all = table;
+        meeting.arrive_and_wait();
+        return all;
+      };
+      f(ranks);
+    });
+  for (std::thread& thread : threads) thread.join();
+}
+
+}  // namespace
+
+TEST_CASE("after a divided loop every rank has every item, each computed by one rank") {
+  constexpr int count = 3, n = 10;
+  std::vector<std::vector<Coefficients>> results(count, std::vector<Coefficients>(n));
+  std::vector<int> computed(n);
+  as_ranks(count, [&](const Ranks& ranks) {
+    std::vector<Coefficients>& mine = results[std::size_t(ranks.rank)];
+    divided_for(
+        divided(ranks, n), n,
+        [&](int k) {
+          ++computed[std::size_t(k)];
+          mine[std::size_t(k)] = test::smooth_field(k, k, 3, unsigned(k));
+        },
+        [&](Parcel& parcel, int k) { parcel(mine[std::size_t(k)]); });
+  });
+  CHECK(computed == std::vector<int>(n, 1));
+  for (const auto& one : results)
+    for (int k = 0; k < n; ++k) {
+      const Coefficients expected = test::smooth_field(k, k, 3, unsigned(k));
+      CHECK(one[std::size_t(k)].order == k);
+      CHECK(one[std::size_t(k)].values == expected.values);
+    }
+}
+
+TEST_CASE("a shape that one rank refuses is refused by all with the sentence of the first such item") {
+  constexpr int count = 4, n = 9;
+  std::vector<std::string> said(count);
+  as_ranks(count, [&](const Ranks& ranks) {
+    try {
+      divided_for(divided(ranks, n), n, [](int k) {
+        if (k == 3 || k == 7) throw std::domain_error("item " + std::to_string(k));
+      });
+    } catch (const std::domain_error& error) {
+      said[std::size_t(ranks.rank)] = error.what();
+    }
+  });
+  CHECK(said == std::vector<std::string>(count, "item 3"));
+}
+
+TEST_CASE("ranks get boxes of about the same weight, whatever their number") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  constexpr int n = 400;
+  std::vector<Vec3> places;
+  std::vector<double> weights;
+  double total = 0;
+  for (int k = 0; k < n; ++k) {
+    places.emplace_back(10 * uniform(random), 3 * uniform(random), uniform(random));
+    weights.push_back(k % 10 == 0 ? 5 : 1);
+    total += weights.back();
+  }
+  for (const int count : {2, 3, 7, 16}) {
+    Ranks ranks;
+    ranks.count = count;
+    const Division division = divided(ranks, places, weights);
+    std::vector<double> load(static_cast<std::size_t>(count));
+    for (int k = 0; k < n; ++k) load.at(std::size_t(division.owner[std::size_t(k)])) += weights[std::size_t(k)];
+    // Each of at most four cuts may miss by half of the heaviest item.
+    for (const double one : load) CHECK(std::abs(one - total / count) <= 4 * 2.5);
+  }
+  Ranks two;
+  two.count = 2;
+  const Division halves = divided(two, places, weights);
+  double left = 0, right = 10;
+  for (int k = 0; k < n; ++k) {
+    const double x = places[std::size_t(k)][0];
+    if (halves.owner[std::size_t(k)] == 0)
+      left = std::max(left, x);
+    else
+      right = std::min(right, x);
+  }
+  CHECK(left <= right);  // cut across the longest side
+}
+
+TEST_CASE("more ranks than items leave some without work, and nothing is lost") {
+  std::vector<std::vector<double>> results(5, std::vector<double>(2));
+  as_ranks(5, [&](const Ranks& ranks) {
+    std::vector<double>& mine = results[std::size_t(ranks.rank)];
+    const std::vector<Vec3> places{Vec3(0, 0, 0), Vec3(0, 0, 0)};
+    const std::vector<double> weights{1, 1};
+    divided_for(
+        divided(ranks, places, weights), 2, [&](int k) { mine[std::size_t(k)] = k + 1; },
+        [&](Parcel& parcel, int k) { parcel(mine[std::size_t(k)]); });
+  });
+  CHECK(results == std::vector<std::vector<double>>(5, {1, 2}));
+}
+
+TEST_CASE("a step taken by three ranks is the step of one, bit for bit, on each of them") {
+  Scene scene;
+  scene.flows = {{}};
+  scene.flows[0].kind = "shear";
+  scene.time.end = 1;
+  for (int k = 0; k < 3; ++k) {
+    VesicleParameters v;
+    v.shape = "prolate";
+    v.reduced_volume = 0.9;
+    v.order = 4;
+    v.viscosity_contrast = 2;
+    v.center = Vec3(3.4 * k, 0, 0.3 * k);
+    scene.vesicles.push_back(v);
+  }
+  const auto stepped = [&](const Ranks& ranks) {
+    Plans plans;
+    const Model s = make_model(scene, plans, ranks);
+    Dynamics d = initial_dynamics(s);
+    for (int k = 0; k < 2; ++k) d = take_step(s, d, 0.02).value().dynamics;
+    return serialised(d);
+  };
+  const std::vector<double> expected = stepped(alone);
+  std::vector<std::vector<double>> found(3);
+  as_ranks(3, [&](const Ranks& ranks) { found[std::size_t(ranks.rank)] = stepped(ranks); });
+  for (const auto& one : found) CHECK(one == expected);
+}
