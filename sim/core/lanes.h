@@ -50,6 +50,27 @@ struct LaneBuffer {
   Lane* get() const { return data.get(); }
 };
 
+/// Uninitialised memory of a function's own: on the stack, unless it is long.
+template <class T, std::size_t few>
+class Scratch {
+ public:
+  explicit Scratch(std::size_t n) {
+    if (n > few) long_.reset(new (std::align_val_t(64)) T[n]);
+    data_ = n > few ? long_.get() : reinterpret_cast<T*>(few_);
+  }
+  Scratch(const Scratch&) = delete;
+  T* get() const { return data_; }
+
+ private:
+  struct Free {
+    void operator()(T* p) const { ::operator delete[](p, std::align_val_t(64)); }
+  };
+  alignas(64) std::byte few_[few * sizeof(T)];
+  std::unique_ptr<T[], Free> long_;
+  T* data_;
+};
+using LaneScratch = Scratch<Lane, 4096>;
+
 template <class Vector>
 Vector lane_sqrt(Vector v) {
   Vector r{};

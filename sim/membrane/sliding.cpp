@@ -1,9 +1,11 @@
 #include "sim/membrane/sliding.h"
 
+#include "sim/layers/product_matrix.h"
 #include "sim/surface/rows.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace sim {
@@ -21,6 +23,22 @@ Vector degree_weights(int p) {
   return a;
 }
 
+/// The degrees <= p of (w.n) n, by transforms or, where these cost more, by one matrix for all iterations.
+std::function<Matrix(const Matrix&)> normal_part(const Basis& basis, const Matrix& n) {
+  constexpr int most_dense = 12;  // at p = 16 transforms are faster: the matrix has 4 MB
+  if (basis.order() > most_dense)
+    return [&basis, &n](const Matrix& w) -> Matrix {
+      const Matrix on_grid = basis.synthesize({basis.order(), w}).values;
+      return basis.analyze(scaled_rows(row_products(on_grid, n), n)).values;
+    };
+  Matrix tensor(n.rows(), 6);
+  for (int d = 0, column = 0; d < 3; ++d)
+    for (int e = d; e < 3; ++e) tensor.col(column++) = n.col(d).cwiseProduct(n.col(e));
+  return [matrix = product_matrix(basis, tensor)](const Matrix& w) -> Matrix {
+    return matrix.apply({matrix.order, w}).values;
+  };
+}
+
 double product(const Matrix& a, const Matrix& b) { return a.cwiseProduct(b).sum(); }
 
 }  // namespace
@@ -28,16 +46,14 @@ double product(const Matrix& a, const Matrix& b) { return a.cwiseProduct(b).sum(
 Coefficients sliding_velocity(const SlidingProblem& s, const Coefficients& guess, double tolerance) {
   const int p = s.basis.order();
   const Vector a = degree_weights(p);
-  const Matrix& n = s.geometry.n;
   const RigidMotion rigid = shape_motion(s.body, s.geometry, s.basis.synthesize(s.velocity).values);
   const Matrix within = s.velocity.values - rigid_velocity(s.body, rigid).values;
   const double strain = (s.gradient + s.gradient.transpose()).norm() / 2;
   const double rate = std::max(motion_rate({p, within}, s.radius), strain / 2);
   const Vector diagonal = a.array() * (1 + rate * s.c) + smallness;
+  const auto along_normal = normal_part(s.basis, s.geometry.n);
   const auto apply = [&](const Matrix& w) -> Matrix {
-    const Matrix on_grid = s.basis.synthesize({p, w}).values;
-    const Matrix normal_part = scaled_rows(row_products(on_grid, n), n);
-    return (diagonal.asDiagonal() * w) + tangentiality * s.basis.analyze(normal_part).values;
+    return diagonal.asDiagonal() * w + tangentiality * along_normal(w);
   };
   const Matrix right = -(a.asDiagonal() * (within + rate * s.position.values));
   const Vector inverse = (diagonal.array() + tangentiality / 3).inverse();

@@ -83,7 +83,7 @@ void Basis::Plan::synthesize(const Coefficients& c, const Wanted& wanted) const 
   TableRange made{3, 0};
   for (const TableRange& range : wanted.tables)
     if (range.count() > 0) made = {std::min(made.first, range.first), std::max(made.last, range.last)};
-  const LaneBuffer spectrum(std::size_t(transform->spectrum_size(made.count() * fields)));
+  const LaneScratch spectrum(std::size_t(transform->spectrum_size(made.count() * fields)));
   transform->along_latitudes(c.values.data(), c.order, fields, made, spectrum.get());
   if (dense()) {
     transform->around(spectrum.get(), c.order, fields, made, wanted);
@@ -138,7 +138,7 @@ void Basis::Plan::fast_analysis(const double* samples, int fields, Lane* spectru
 
 Coefficients Basis::Plan::analyze(const double* samples, int fields) const {
   Coefficients c{p, Matrix(coefficient_count(p), fields)};
-  const LaneBuffer spectrum(std::size_t(transform->spectrum_size(fields)));
+  const LaneScratch spectrum(std::size_t(transform->spectrum_size(fields)));
   if (dense())
     transform->spectrum_of(samples, fields, spectrum.get());
   else

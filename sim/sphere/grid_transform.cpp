@@ -113,24 +113,19 @@ struct Series {
 template <bool whole, int W>
 void write_orbits(const double* table, int p, const Series series, int longitudes, const Columns<W> columns) {
   const std::ptrdiff_t width = 2 * p + 1, half = longitudes / 2;
-  const auto sums = [&](std::ptrdiff_t l) {
-    return fourier_sums<W>(table + l * width, p, series.degree, series.mean, series.cosines, series.sines, series.row);
-  };
-  const Mirrored<W> axis = sums(0);
-  columns.template write<whole>(0, axis.member[0]);
-  columns.template write<whole>(half, axis.member[2]);
-  std::ptrdiff_t l = 1;
-  for (; 4 * l < longitudes; ++l) {
-    const Mirrored<W> f = sums(l);
+  for (std::ptrdiff_t l = 0; 4 * l <= longitudes; ++l) {
+    const Mirrored<W> f =
+        fourier_sums<W>(table + l * width, p, series.degree, series.mean, series.cosines, series.sines, series.row);
     columns.template write<whole>(l, f.member[0]);
+    if (l == 0) {
+      columns.template write<whole>(half, f.member[2]);
+      continue;
+    }
     columns.template write<whole>(longitudes - l, f.member[1]);
+    if (4 * l == longitudes) return;
     columns.template write<whole>(half - l, f.member[2]);
     columns.template write<whole>(half + l, f.member[3]);
   }
-  if (4 * l > longitudes) return;
-  const Mirrored<W> across = sums(l);
-  columns.template write<whole>(l, across.member[0]);
-  columns.template write<whole>(longitudes - l, across.member[1]);
 }
 
 /// Sums of samples over the mirrors of every orbit, [cos even, cos odd, sin even, sin odd][orbit][width]: one of the
@@ -192,23 +187,24 @@ void GridTransform::along_latitudes(const double* coefficients, int degree, int 
                                     Lane* spectrum) const {
   const Eigen::Index count = coefficient_count(degree);
   const std::ptrdiff_t row = std::ptrdiff_t(range.count()) * fields * lanes_;
-  std::vector<double> gathered(std::size_t(degree + 1) * 2 * fields);
-  std::vector<Lane*> out(std::size_t(2) * fields);
+  const Scratch<double, 1024> gathered(std::size_t(degree + 1) * 2 * fields);
+  const Scratch<Lane*, 64> out(std::size_t(2) * fields);
   for (int m = 0; m <= degree; ++m) {
     const int depth = degree - m + 1, rows = (m == 0 ? 1 : 2) * fields;
     for (int r = 0; r < rows; ++r) {
       const int field = r % fields, sign = r < fields ? 1 : -1;
       const double* c = coefficients + field * count;
-      for (int n = m; n <= degree; ++n) gathered[std::size_t(r) * depth + n - m] = c[coefficient_index(n, sign * m)];
-      out[r] = spectrum + (sign > 0 ? m : p_ + m) * row + field * lanes_;
+      for (int n = m; n <= degree; ++n)
+        gathered.get()[std::size_t(r) * depth + n - m] = c[coefficient_index(n, sign * m)];
+      out.get()[r] = spectrum + (sign > 0 ? m : p_ + m) * row + field * lanes_;
     }
     for (int t = range.first; t < range.last; ++t) {
       const Lane* table = legendre_[t].get() + first_of(m) * lanes_;
       const std::ptrdiff_t start = std::ptrdiff_t(t - range.first) * fields * lanes_;
       in_fours(lanes_, [=, this, &gathered, &out](auto width, int lane) {
         in_threes(rows, [=, this, &gathered, &out](auto height, int r) {
-          scalar_rows<decltype(height)::value, decltype(width)::value>(gathered.data() + r * depth, depth, table + lane,
-                                                                       lanes_, out.data() + r, start + lane);
+          scalar_rows<decltype(height)::value, decltype(width)::value>(gathered.get() + r * depth, depth, table + lane,
+                                                                       lanes_, out.get() + r, start + lane);
         });
       });
     }
@@ -246,7 +242,7 @@ void GridTransform::around(const Lane* spectrum, int degree, int fields, TableRa
 void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectrum) const {
   const int vectors = fields * lanes_, width = 2 * p_ + 1, last = nlat_ - (lanes_ - 1) * lanes;
   const int count = orbits();
-  LaneBuffer folded(std::size_t(count) * 4 * 3);
+  const LaneScratch folded(std::size_t(count) * 4 * 3);
   in_threes(vectors, [&](auto group, int at) {
     constexpr int W = decltype(group)::value;
     Lane* const sums = folded.get();

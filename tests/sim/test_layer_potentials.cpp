@@ -1,3 +1,4 @@
+#include "sim/layers/product_matrix.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
 
@@ -133,4 +134,25 @@ TEST_CASE("assembly gives the same bits with one and with two threads, and S doe
   CHECK(one.dual.values == two.dual.values);
   const Coefficients f = test::smooth_field(9, 9, 3, 1);
   CHECK(one.single.apply(f).values == alone.single.apply(f).values);
+}
+
+TEST_CASE("the matrix of a product with a tensor field does what synthesis, product and analysis do") {
+  for (const int p : {1, 4, 7})
+    for (const int q : {p, p + 1, 2 * p}) {
+      const Basis basis(p, q);
+      Matrix tensor(basis.points(), 6), w = test::smooth_field(p, p, 3, 1).values;
+      for (int d = 0; d < 6; ++d)  // of any degree: whatever a grid makes of it, both make
+        for (int k = 0; k < basis.points(); ++k) tensor(k, d) = std::sin(1.0 + d + k * (3.0 + d));
+      const Matrix on_grid = basis.synthesize({p, w}).values;
+      Matrix image(basis.points(), 3);
+      for (int d = 0; d < 3; ++d) {
+        const int column[3] = {d == 0 ? 0 : d, d == 0 ? 1 : d + 2, d == 0 ? 2 : d + 3};
+        image.col(d) = tensor.col(column[0]).cwiseProduct(on_grid.col(0)) +
+                       tensor.col(column[1]).cwiseProduct(on_grid.col(1)) +
+                       tensor.col(column[2]).cwiseProduct(on_grid.col(2));
+      }
+      const Matrix expected = basis.analyze(image).values;
+      INFO("p = " << p << ", q = " << q);
+      CHECK((product_matrix(basis, tensor).apply({p, w}).values - expected).norm() < 1e-13 * expected.norm());
+    }
 }
