@@ -302,7 +302,7 @@ TEST_CASE("a periodic cell takes flows that keep it one, and sets the volume fra
   const auto streams = [](const std::string& more) {
     return replaced("kind = \"shear\"\nrate = 1.0", "kind = \"streams\"\ncentreline_velocity = 1" + more);
   };
-  CHECK_THAT(error_of(streams("")), Contains("s.toml:4:8") && Contains("'streams' needs its 'wavelength'"));
+  CHECK_THAT(error_of(streams("")), Contains("s.toml:4:8") && Contains("'streams' needs the key 'wavelength'"));
   CHECK(error_of(streams("\nwavelength = 2.7")) == "");
   CHECK(error_of(streams("\nwavelength = 2") + "[cell]\nsize = [3, 4, 6]\n") == "");
   for (const char* length : {"4", "8", "2.1"})

@@ -111,6 +111,7 @@ TEST_CASE("a flow without strength or that never acts is told of, fluid at rest 
     scene.flows[0] = {};
     scene.flows[0].kind = row.name;
     scene.flows[0].rate = 0;
+    scene.flows[0].wavelength = 6;
     const Model s = make_model(scene, plans);
     const std::vector<std::string> warnings = scene_warnings(s, initial_dynamics(s));
     if (row.name == "none") {
