@@ -29,6 +29,7 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
   if (!program.takes_ctrl_c) ::setpgid(0, 0);
   for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(number, SIG_DFL);
   if (program.input >= 0) ::dup2(program.input, STDIN_FILENO);
+  if (program.errors >= 0) ::dup2(program.errors, STDERR_FILENO);
   environ = variables;
   ::execvp(program.file.c_str(), words);
   const int reason = errno;

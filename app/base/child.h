@@ -13,6 +13,7 @@ struct ChildProgram {
   std::vector<std::string> words;        ///< arguments, starting with the program's name
   std::vector<std::string> environment;  ///< NAME=VALUE; empty: that of this process
   int input = -1;                        ///< a descriptor that becomes its standard input; -1: that of this process
+  int errors = -1;                       ///< one that becomes its standard error; -1: that of this process
   bool takes_ctrl_c = true;              ///< false: Ctrl-C on the terminal reaches only this process
   int last_signal;                       ///< signal it receives when this process dies
 };

@@ -1,12 +1,15 @@
 #include "app/pictures/movie.h"
 
 #include "app/base/child.h"
+#include "app/base/printable.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -59,6 +62,7 @@ MovieEncoder::MovieEncoder(const MovieFormat& format, OwnedFiles& folder, int wi
   int frames[2];  // its input
   if (pipe2(frames, O_CLOEXEC) != 0)
     throw std::runtime_error(fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
+  said_ = ::memfd_create("ffmpeg", MFD_CLOEXEC);  // -1: it speaks for itself
   int reason = 0;
   try {
     // An ffmpeg without its parent would go on with a movie that nobody waits for. Ctrl-C is for us: we end the movie
@@ -68,6 +72,7 @@ MovieEncoder::MovieEncoder(const MovieFormat& format, OwnedFiles& folder, int wi
          .words = arguments(format, std::filesystem::absolute(draft_.path()), width, height, frame_rate, transparent),
          .environment = {},
          .input = frames[0],
+         .errors = said_,
          .takes_ctrl_c = false,
          .last_signal = SIGKILL});
   } catch (const std::system_error& error) {
@@ -83,10 +88,19 @@ MovieEncoder::MovieEncoder(const MovieFormat& format, OwnedFiles& folder, int wi
 }
 
 MovieEncoder::~MovieEncoder() {
+  // At the end of its input it would try to finish the movie, and complain where the disk is full.
+  if (child_ >= 0) ::kill(child_, SIGKILL);
   if (pipe_ >= 0) ::close(pipe_);
-  if (child_ < 0) return;
-  ::kill(child_, SIGKILL);
-  wait_for_child(child_);
+  if (child_ >= 0) wait_for_child(child_);
+  if (said_ >= 0) ::close(said_);
+}
+
+std::string MovieEncoder::complaint() const {
+  std::array<char, 1000> text{};
+  const ssize_t size = said_ < 0 ? 0 : ::pread(said_, text.data(), text.size(), 0);
+  const std::string_view all(text.data(), size < 0 ? 0 : static_cast<std::size_t>(size));
+  const std::string_view line = all.substr(0, all.find('\n'));
+  return line.empty() ? std::string() : fmt::format(" ({})", printable(line));
 }
 
 void MovieEncoder::add(const render::Image& image) {
@@ -97,7 +111,7 @@ void MovieEncoder::add(const render::Image& image) {
   for (std::size_t left = image.pixels.size(); left > 0;) {
     const ssize_t done = ::write(pipe_, from, left);
     if (done < 0 && errno == EINTR) continue;
-    if (done < 0) throw std::runtime_error("ffmpeg stopped before the movie was complete");
+    if (done < 0) throw std::runtime_error(fmt::format("ffmpeg stopped before the movie was complete{}", complaint()));
     from += done;
     left -= static_cast<std::size_t>(done);
   }
@@ -110,9 +124,9 @@ void MovieEncoder::finish() {
   if (good && std::filesystem::file_size(draft_.path()) == 0)
     throw std::runtime_error(fmt::format("ffmpeg left no movie '{}'", (folder_.folder() / name_).string()));
   if (!good)
-    throw std::runtime_error(
-        fmt::format("ffmpeg failed with {} {}; '{}' was not written", WIFEXITED(status) ? "exit status" : "signal",
-                    WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status), (folder_.folder() / name_).string()));
+    throw std::runtime_error(fmt::format(
+        "ffmpeg failed with {} {}{}; '{}' was not written", WIFEXITED(status) ? "exit status" : "signal",
+        WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status), complaint(), (folder_.folder() / name_).string()));
   folder_.list(name_, draft_);
   folder_.publish(draft_, name_);
 }

@@ -28,12 +28,16 @@ class MovieEncoder {
   void finish();
 
  private:
+  /// The first line that ffmpeg wrote of an error, in brackets; nothing without one.
+  std::string complaint() const;
+
   OwnedFiles& folder_;
   std::string name_;
   sim::Draft draft_;
   int width_, height_, channels_;
   pid_t child_ = -1;
   int pipe_ = -1;
+  int said_ = -1;  ///< what ffmpeg writes of errors
 };
 
 struct FfmpegMissing : std::runtime_error {

@@ -82,6 +82,21 @@ $T render t.h5 -o disk -q; echo "status $?"; diff -r disk whole && echo equal
   CHECK(std::count(outcome.out.begin(), outcome.out.end(), '\n') == 4);  // nothing half-written was found
 }
 
+TEST_CASE("what ffmpeg says of a failure is part of the sentence about the movie, and of nothing else", "[faults]") {
+  const Desk desk(scene("0.5"));
+  fs::create_directory(desk / "bin");
+  support::write_file(desk / "bin/ffmpeg",
+                      "#!/bin/sh\ncat >/dev/null\nprintf 'no room\\033[31m\\nmore words\\n' >&2\nexit 3\n");
+  fs::permissions(desk / "bin/ffmpeg", fs::perms::owner_all);
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  const Outcome o = desk.with({"PATH=" + desk.file("bin") + ":/usr/bin:/bin"},
+                              {"render", desk.file("t.h5"), "-o", desk.file("out"), "-q"});
+  CHECK(o.status == 1);
+  INFO(o.err);
+  CHECK(one_sentence(o.err));
+  CHECK_THAT(o.err, Contains("ffmpeg failed with exit status 3 (no room?[31m);"));
+}
+
 TEST_CASE("a file that may not grow is an error with a sentence and leaves nothing", "[faults]") {
   const Desk desk;
   Outcome o = desk.shell("ulimit -f 8; exec $T simulate s.toml -o t.h5 -q");
