@@ -31,7 +31,8 @@ TOUCHING = "[[vesicle]]\norder = 4\n[[vesicle]]\norder = 4\ncenter = [1.5, 0, 0]
 
 # More ranks than processors, and as root in a container: Open MPI wants to be told. Threads would only fight here.
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_btl_base_warn_component_unused="0")
+                   OMPI_MCA_rmaps_base_oversubscribe="1", PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe",
+                   OMPI_MCA_btl_base_warn_component_unused="0")
 # Processes that wait let the others work.
 ENVIRONMENT["OMPI_MCA_mpi_yield_when_idle"] = "1"
 # On this machine only: no shell for others is looked for.
@@ -67,8 +68,8 @@ def sentences(text):
 def main():
     if not shutil.which("mpirun"):
         return SKIPPED
-    if subprocess.run(["mpirun", "-n", "2", "true"], env=ENVIRONMENT, capture_output=True).returncode != 0:
-        print("ranks: mpirun starts no two processes here")
+    if subprocess.run(["mpirun", "-n", "3", "true"], env=ENVIRONMENT, capture_output=True).returncode != 0:
+        print("ranks: mpirun starts no three processes here")
         return SKIPPED
     Path("free.toml").write_text(FREE)
     Path("periodic.toml").write_text(PERIODIC)
