@@ -168,18 +168,24 @@ void transfer(Parcel& parcel, VesicleDynamics& vesicle) {
   });
 }
 
+TrajectoryLayout layout_of(const Dynamics& d) {
+  TrajectoryLayout layout;
+  layout.vesicles = int(d.vesicles.size());
+  layout.order = layout.label_order = 0;
+  for (const VesicleDynamics& v : d.vesicles) {
+    layout.order = std::max(layout.order, v.position.order);
+    layout.label_order = std::max(layout.label_order, v.labels.order);
+    layout.tracers = int(v.tracers.rows());
+  }
+  return layout;
+}
+
 void from_first(const Ranks& ranks, Dynamics& d) {
   std::vector<double> numbers;
   TrajectoryLayout layout;
   if (ranks.first()) {
     numbers = serialised(d);
-    layout.vesicles = int(d.vesicles.size());
-    layout.order = layout.label_order = 0;
-    for (const VesicleDynamics& v : d.vesicles) {
-      layout.order = std::max(layout.order, v.position.order);
-      layout.label_order = std::max(layout.label_order, v.labels.order);
-      layout.tracers = int(v.tracers.rows());
-    }
+    layout = layout_of(d);
   }
   from_first(ranks, numbers, [&](Parcel& parcel, std::vector<double>& all) {
     parcel(layout.vesicles), parcel(layout.order), parcel(layout.label_order), parcel(layout.tracers), parcel(all);

@@ -113,6 +113,8 @@ inline constexpr int most_past_levels = 8;
 std::vector<double> serialised(const Dynamics&);
 /// How many numbers serialised() may come to while a scheme looks back over so many levels.
 std::size_t resume_numbers(const Dynamics&, int past_levels);
+/// Counts and orders of a state: the part of a layout that does not depend on how long a run is.
+TrajectoryLayout layout_of(const Dynamics&);
 /// Of one vesicle, and of what may have been rejected, between ranks.
 void transfer(Parcel&, VesicleDynamics&);
 template <class T, class Transfer>

@@ -5,9 +5,10 @@
 //   e_q = s |(u_p - u_q).n| / R0   (root mean square over the surface),   q = p - 4, p - 2,
 // are the errors of position, a time, that lower degrees would leave; of normal velocities, since grid points may slide
 // as they like. Most of a wrong deformation relaxes again where the flow turns material: a share s = 0.15 stays, but
-// all of it where the flow only stretches (docs/stepping.md). Errors fall geometrically with the degree, so that p
-// itself leaves e_p = e_{p-2}^2 / e_{p-4}. Both compare with the error that a step may have (control.h): an automatic
-// order rises where e_p is above it, and falls where e_{p-2} is far below.
+// all of it where the flow only stretches, and more where it ends before material has turned (docs/stepping.md). Errors
+// fall geometrically with the degree, so that p itself leaves e_p = e_{p-2}^2 / e_{p-4}. Both compare with the error
+// that a step may have (control.h): an automatic order rises where e_p is above it, and falls where e_{p-2} is far
+// below.
 //
 // Between membranes a distance h apart the pressure of the film varies over lengths of sqrt(h R0). What it is wrong by
 // does not relax: a degree leaves

@@ -97,14 +97,7 @@ Attempt<Step> adaptive_step(const Model& s, Dynamics& d, double target, const Si
 }
 
 TrajectoryLayout layout_for(const Scene& scene, const Dynamics& d) {
-  TrajectoryLayout layout;
-  layout.vesicles = int(d.vesicles.size());
-  layout.order = layout.label_order = 0;
-  for (const VesicleDynamics& v : d.vesicles) {
-    layout.order = std::max(layout.order, v.position.order);
-    layout.label_order = std::max(layout.label_order, v.labels.order);
-    layout.tracers = int(v.tracers.rows());
-  }
+  TrajectoryLayout layout = layout_of(d);
   // How many steps a tolerance takes is not known: room as for saved states, and the file grows.
   const double steps = steps_adapt(scene.time) ? 0 : std::ceil(scene.time.end / longest_step(scene));
   const std::optional<double> every = save_interval(scene.time);
