@@ -80,12 +80,13 @@ double shape_distance(const sim::VesicleState& v, const sim::VesicleState& refer
   const sim::Basis basis(v.position.order, q), search(reference.position.order, reference.position.order);
   const sim::FirstDerivatives x = basis.first(v.position);
   const sim::Matrix starts = search.synthesize(reference.position).values;
+  const sim::PointSampler surface(reference.position);
   double sum = 0, area = 0;
   for (Eigen::Index k = 0; k < x.value.rows(); ++k) {
     const sim::Vec3 point = x.value.row(k).transpose();
     Eigen::Index start = 0;
     (starts.rowwise() - point.transpose()).rowwise().squaredNorm().minCoeff(&start);
-    const sim::NearestPoint nearest = sim::nearest_point(reference.position, point, sim::grid_direction(search, start));
+    const sim::NearestPoint nearest = sim::nearest_point(surface, point, sim::grid_direction(search, start));
     const sim::Vec3 t = x.t.row(k).transpose(), f = x.f.row(k).transpose();
     const double element = t.cross(f).norm() / basis.sin_theta()[k] * basis.weights()[k];
     sum += element * nearest.distance * nearest.distance;

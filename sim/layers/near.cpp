@@ -8,62 +8,43 @@
 
 namespace sim {
 
-namespace {
-
 using std::numbers::pi;
 
-/// At a pole there is no derivative along a circle of latitude; a point that is off by less than 1e-6 has one.
-Vec3 beside_the_pole(const Vec3& s) {
-  return std::hypot(s[0], s[1]) < 1e-9 ? Vec3(s[0] + 1e-6, s[1], s[2]).normalized() : s;
-}
-
-Vec3 normal_at(const Coefficients& x, const Vec3& s) {
-  const FirstDerivatives y = sample_points_first(x, s.transpose());
-  const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose();
-  return a.cross(b).normalized();
-}
-
-}  // namespace
-
-NearestPoint nearest_point(const Coefficients& x, const Vec3& target, const Vec3& start) {
+NearestPoint nearest_point(const PointSampler& surface, const Vec3& target, const Vec3& start) {
   // Newton on |x(s) - target|^2 / 2 along great circles through s; a step that does not come nearer is halved.
   Vec3 s = beside_the_pole(start.normalized());
-  SecondDerivatives y = sample_points_second(x, s.transpose());
-  const auto distance_of = [&](const SecondDerivatives& at) { return (at.value.row(0).transpose() - target).norm(); };
-  double distance = distance_of(y);
+  PointTangents y = surface.tangents(s);
+  double distance = (y.x - target).norm();
   for (int iteration = 0; iteration < 50; ++iteration) {
-    const auto [e_t, e_f, rho] = sphere_frame(s);
-    const Vec3 a = y.t.row(0).transpose(), b = y.f.row(0).transpose() / rho, miss = target - y.value.row(0).transpose();
-    const Eigen::Vector2d slope(a.dot(miss), b.dot(miss));
+    const Vec3 miss = target - y.x;
+    const Eigen::Vector2d slope(y.a.dot(miss), y.b.dot(miss));
+    const double ab = y.a.dot(y.b);
     Eigen::Matrix2d metric, curved;
-    metric << a.dot(a), a.dot(b), a.dot(b), b.dot(b);
-    // The second derivative along the sphere; at a pole 1/rho^2 amplifies rounding, and the metric alone must do.
-    const Vec3 x_tf = (y.tf.row(0).transpose() - s[2] * b) / rho;
-    const Vec3 x_ff = (y.ff.row(0).transpose() / rho + s[2] * a) / rho;
-    curved << a.dot(a) - y.tt.row(0).dot(miss), a.dot(b) - x_tf.dot(miss), 0, b.dot(b) - x_ff.dot(miss);
-    curved(1, 0) = curved(0, 1);
+    metric << y.a.dot(y.a), ab, ab, y.b.dot(y.b);
+    curved << y.aa.dot(miss), y.ab.dot(miss), y.ab.dot(miss), y.bb.dot(miss);
+    curved = metric - curved;
     // Where the target lies beyond a centre of curvature the least distance is elsewhere: the metric always descends.
-    const bool newton = rho > 1e-4 && curved(0, 0) > 0 && curved.determinant() > 0.01 * metric.determinant();
+    // So it does at a pole, where second derivatives lose their digits.
+    const bool newton = y.pole > 1e-4 && curved(0, 0) > 0 && curved.determinant() > 0.01 * metric.determinant();
     const Eigen::Vector2d step = (newton ? curved : metric).ldlt().solve(slope);
     if (step.norm() < 1e-14) break;
     const bool last = newton && step.norm() < 1e-7;  // its square is below rounding; the distance no longer tells
     double length = std::min(1.0, 0.5 / step.norm());
     bool nearer = false;
     for (int half = 0; half < 30 && !nearer; ++half, length /= 2) {
-      const Vec3 trial = (s + length * (step[0] * e_t + step[1] * e_f)).normalized();
-      SecondDerivatives z = sample_points_second(x, trial.transpose());
-      const double d = distance_of(z);
+      const Vec3 trial = (s + length * (step[0] * y.e1 + step[1] * y.e2)).normalized();
+      const PointTangents z = surface.tangents(trial);
+      const double d = (z.x - target).norm();
       if (d < distance || last) {
-        s = trial;
-        y = std::move(z);
+        s = beside_the_pole(trial);
+        y = z;
         nearer = true;
         distance = d;
       }
     }
     if (!nearer || last) break;
   }
-  const Vec3 position = y.value.row(0).transpose();
-  return {s, position, distance, normal_at(x, beside_the_pole(s)).dot(target - position) < 0};
+  return {s, y.x, distance, y.a.cross(y.b).dot(target - y.x) < 0};
 }
 
 namespace {

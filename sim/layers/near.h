@@ -6,6 +6,7 @@
 // the density's coefficients, so that one evaluation of the kernel serves a whole solve.
 #pragma once
 
+#include "sim/sphere/point_sampler.h"
 #include "sim/sphere/rotation.h"
 
 namespace sim {
@@ -27,7 +28,7 @@ struct NearestPoint {
 };
 
 /// Newton's method for the nearest point of x(s) to the target, started at the parameter `start`.
-NearestPoint nearest_point(const Coefficients& position, const Vec3& target, const Vec3& start);
+NearestPoint nearest_point(const PointSampler& position, const Vec3& target, const Vec3& start);
 
 /// Rows of (4) with mu = 1 and of (5) without (1 - lambda) for one target: (p+1)^2 x 6 each, blocks xx, xy, xz, yy, yz,
 /// zz.

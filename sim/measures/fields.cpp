@@ -48,9 +48,11 @@ Vector membrane_speed(const FieldSite& s) {
 
 /// A vesicle as a net of points, dense enough to find the nearest part of it. Points near each other make a patch.
 struct Surroundings::Net {
+  PointSampler surface;
   Matrix points, normals, parameters;
   Vec3 centre;
   double reach;  ///< of its points from the centre
+  double inner;  ///< least distance of its points from the centre
   struct Patch {
     Vec3 centre;
     double reach;
@@ -69,7 +71,7 @@ Net net_of(const Coefficients& position) {
   const Vector theta = Vector::LinSpaced(latitudes, step / 2, std::numbers::pi - step / 2);
   const Vector phi = Vector::LinSpaced(longitudes + 1, 0, 2 * std::numbers::pi).head(longitudes);
   const FirstDerivatives x = sample_grid(position, theta, phi);
-  Net net;
+  Net net{PointSampler(position), {}, {}, {}, Vec3::Zero(), 0, 0, {}};
   net.points = x.value;
   net.normals.resize(x.value.rows(), 3);
   net.parameters.resize(x.value.rows(), 3);
@@ -79,7 +81,9 @@ Net net_of(const Coefficients& position) {
     net.parameters.row(k) = unit_vector(theta[k % latitudes], phi[k / latitudes]).transpose();
   }
   net.centre = net.points.colwise().mean().transpose();
-  net.reach = (net.points.rowwise() - net.centre.transpose()).rowwise().norm().maxCoeff();
+  const Vector away = (net.points.rowwise() - net.centre.transpose()).rowwise().norm();
+  net.reach = away.maxCoeff();
+  net.inner = away.minCoeff();
   for (Eigen::Index j = 0; j < longitudes; j += side)
     for (Eigen::Index i = 0; i < latitudes; i += side) {
       Net::Patch& patch = net.patches.emplace_back(Net::Patch{Vec3::Zero(), 0, {}});
@@ -122,7 +126,8 @@ struct Other {
   std::size_t vesicle;
   Vec3 shift;
 };
-/// Those that may be the nearest to a vesicle: all others, and of images the 27 round the nearest.
+/// Those that may be the nearest to some point of a vesicle: of all others, and of 27 images round the nearest, those
+/// whose least possible distance is below what another one surely keeps.
 std::vector<Other> others_of(const FieldSite& s) {
   const std::vector<Net>& nets = s.surroundings.nets(s.state);
   const CellSides& cell = s.surroundings.cell();
@@ -138,6 +143,12 @@ std::vector<Other> others_of(const FieldSite& s) {
         for (int c = -1; c <= 1; ++c)
           if (k != s.vesicle || a != 0 || b != 0 || c != 0) all.push_back({k, *cell * (number + Vec3(a, b, c))});
   }
+  const auto between = [&](const Other& o) {
+    return (nets[s.vesicle].centre - nets[o.vesicle].centre - o.shift).norm();
+  };
+  double sure = std::numeric_limits<double>::infinity();
+  for (const Other& o : all) sure = std::min(sure, between(o) + nets[s.vesicle].reach + nets[o.vesicle].inner);
+  std::erase_if(all, [&](const Other& o) { return between(o) - nets[s.vesicle].reach - nets[o.vesicle].reach > sure; });
   return all;
 }
 
@@ -149,15 +160,16 @@ Vector neighbour_distance(const FieldSite& s) {
   const std::vector<Other> others = others_of(s);
   parallel_for(static_cast<int>(x.rows()), [&](int i) {
     double best = std::numeric_limits<double>::infinity();
-    // Those that may come nearest first: most of the others need no look.
-    std::vector<std::pair<double, std::size_t>> order;
+    std::vector<double> least(others.size());  // distances that they can have
     for (std::size_t k = 0; k < others.size(); ++k) {
       const Net& net = nets[others[k].vesicle];
-      order.emplace_back((x.row(i).transpose() - others[k].shift - net.centre).norm() - net.reach, k);
+      least[k] = (x.row(i).transpose() - others[k].shift - net.centre).norm() - net.reach;
     }
-    std::sort(order.begin(), order.end());
-    for (const auto& [least, other] : order) {
-      if (least >= best) break;
+    // Those that may come nearest first: most of the others need no look.
+    for (;;) {
+      const std::size_t other = std::size_t(std::min_element(least.begin(), least.end()) - least.begin());
+      if (least[other] >= best) break;
+      least[other] = std::numeric_limits<double>::infinity();
       const std::size_t k = others[other].vesicle;
       const Vec3 here = x.row(i).transpose() - others[other].shift;
       const Net& net = nets[k];
@@ -166,10 +178,9 @@ Vector neighbour_distance(const FieldSite& s) {
       // Above the tangent plane of a surface that curves like the net's own sphere.
       const double aside2 = std::max(rough * rough - height * height, 0.0),
                    curved = height + 0.5 * aside2 / (net.reach + height);
-      best = std::min(
-          best, rough > near
-                    ? std::min(rough, curved)
-                    : nearest_point(s.state.vesicles[k].position, here, Vec3(net.parameters.row(nearest))).distance);
+      best =
+          std::min(best, rough > near ? std::min(rough, curved)
+                                      : nearest_point(net.surface, here, Vec3(net.parameters.row(nearest))).distance);
     }
     distance[i] = best;
   });

@@ -19,9 +19,6 @@ using std::numbers::pi;
 /// Up to this degree a dense Fourier product beats FFTW's real transforms (docs/performance.md has the measurement).
 constexpr int dense_fourier_limit = 40;
 
-/// Normalisation of the longitude factor: 1/sqrt(2 pi) for m = 0, 1/sqrt(pi) otherwise.
-double longitude_norm(int m) { return m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi); }
-
 }  // namespace
 
 struct Basis::Plan {

@@ -77,4 +77,6 @@ LegendreTable legendre_table(int p, const Vector& theta, int derivatives) {
   return table;
 }
 
+double longitude_norm(int m) { return 1 / std::sqrt(m == 0 ? 2 * std::numbers::pi : std::numbers::pi); }
+
 }  // namespace sim

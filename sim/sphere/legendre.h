@@ -26,4 +26,7 @@ struct LegendreTable {
 /// `derivatives`: how many are wanted; the others stay empty.
 LegendreTable legendre_table(int p, const Vector& theta, int derivatives = 2);
 
+/// Factor that gives cos(m phi) and sin(m phi) a unit square integral over phi.
+double longitude_norm(int m);
+
 }  // namespace sim

@@ -2,6 +2,7 @@
 
 #include "sim/core/divided.h"
 #include "sim/layers/far_field.h"
+#include "sim/layers/near.h"
 
 #include <fmt/format.h>
 
@@ -26,53 +27,37 @@ double winding(const Sources& s, const Vec3& x) {
   return sum / (4 * std::numbers::pi);
 }
 
-/// Two parameters on two surfaces, and Newton for the least distance between them.
+/// Two parameters on two surfaces.
 struct Approach {
-  Vec3 s, t;  ///< parameters on the first and the second surface
+  Vec3 s, t;
   double distance = 0;
 };
 
-/// |x - y|^2 / 2 in tangent coordinates q about (s, t).
-struct ApproachSlope {
-  const Coefficients &x, &y;
-  Vec3 s, t, a1, a2, b1, b2;
-  ApproachSlope(const Coefficients& first, const Coefficients& second, const Approach& at)
-      : x(first),
-        y(second),
-        s(at.s),
-        t(at.t),
-        a1(s.unitOrthogonal()),
-        a2(s.cross(a1)),
-        b1(t.unitOrthogonal()),
-        b2(t.cross(b1)) {}
-  Approach moved(const Eigen::Vector4d& q) const {
-    Approach m{(s + q[0] * a1 + q[1] * a2).normalized(), (t + q[2] * b1 + q[3] * b2).normalized(), 0};
-    m.distance = (sample_points(x, m.s.transpose()) - sample_points(y, m.t.transpose())).norm();
-    return m;
-  }
-  double half_square(const Eigen::Vector4d& q) const { return 0.5 * std::pow(moved(q).distance, 2); }
+/// Slope and curvature of |x(s) - y(t)|^2 / 2 along great circles through s and t.
+struct Bowl {
+  Eigen::Vector4d slope;
+  Eigen::Matrix4d curvature;
 };
+Bowl bowl(const PointTangents& x, const PointTangents& y) {
+  const Vec3 d = x.x - y.x;
+  Eigen::Matrix<double, 3, 4> tangents;
+  tangents << x.a, x.b, -y.a, -y.b;
+  Bowl b{tangents.transpose() * d, tangents.transpose() * tangents};
+  b.curvature(0, 0) += x.aa.dot(d);
+  b.curvature(1, 1) += x.bb.dot(d);
+  b.curvature(0, 1) = b.curvature(1, 0) += x.ab.dot(d);
+  b.curvature(2, 2) -= y.aa.dot(d);
+  b.curvature(3, 3) -= y.bb.dot(d);
+  b.curvature(2, 3) = b.curvature(3, 2) -= y.ab.dot(d);
+  return b;
+}
 
-/// Newton with differences for slope and curvature; a step that does not come nearer is halved.
-Approach nearest_approach(const Coefficients& x, const Coefficients& y, Approach at) {
-  at = ApproachSlope(x, y, at).moved(Eigen::Vector4d::Zero());
+/// Newton's method for the least distance; a step that does not come nearer is halved.
+Approach nearest_approach(const PointSampler& first, const PointSampler& second, Approach at) {
+  PointTangents x = first.tangents(at.s), y = second.tangents(at.t);
+  at.distance = (x.x - y.x).norm();
   for (int iteration = 0; iteration < 30; ++iteration) {
-    const ApproachSlope f(x, y, at);
-    constexpr double h = 1e-4;  // rounding 1e-16/h^2 and truncation h^2 both leave eight digits in the curvature
-    Eigen::Vector4d slope;
-    Eigen::Matrix4d curvature;
-    const double centre = f.half_square(Eigen::Vector4d::Zero());
-    for (int a = 0; a < 4; ++a) {
-      const Eigen::Vector4d e = h * Eigen::Vector4d::Unit(a);
-      const double plus = f.half_square(e), minus = f.half_square(-e);
-      slope[a] = (plus - minus) / (2 * h);
-      curvature(a, a) = (plus - 2 * centre + minus) / (h * h);
-      for (int b = 0; b < a; ++b) {
-        const Eigen::Vector4d d = h * Eigen::Vector4d::Unit(b);
-        curvature(a, b) = curvature(b, a) =
-            (f.half_square(e + d) - f.half_square(e - d) - f.half_square(d - e) + f.half_square(-e - d)) / (4 * h * h);
-      }
-    }
+    const auto [slope, curvature] = bowl(x, y);
     // Directions of negative or no curvature are walked down by their size.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(curvature);
     const Eigen::Vector4d size =
@@ -81,11 +66,16 @@ Approach nearest_approach(const Coefficients& x, const Coefficients& y, Approach
     if (step.norm() > 0.2) step *= 0.2 / step.norm();
     bool nearer = false;
     for (int half = 0; half < 20 && !nearer; ++half, step /= 2) {
-      const Approach trial = f.moved(step);
+      Approach trial{(at.s + step[0] * x.e1 + step[1] * x.e2).normalized(),
+                     (at.t + step[2] * y.e1 + step[3] * y.e2).normalized()};
+      const PointTangents u = first.tangents(trial.s), v = second.tangents(trial.t);
+      trial.distance = (u.x - v.x).norm();
       if (trial.distance < at.distance) {
         nearer = at.distance - trial.distance > 1e-14 * at.distance;
         at = trial;
         if (!nearer) return at;
+        x = u;
+        y = v;
       }
     }
     if (!nearer) break;
@@ -96,12 +86,14 @@ Approach nearest_approach(const Coefficients& x, const Coefficients& y, Approach
 /// A surface with the source grid on which gaps are looked for.
 struct Surface {
   Coefficients position;
+  PointSampler sampler;
   const Basis& basis;
   Sources sources;
 };
 
 Surface moved(Surface s, const Vec3& shift) {
   s.position.values.row(0) += std::sqrt(4 * std::numbers::pi) * shift.transpose();
+  s.sampler = PointSampler(s.position);
   s.sources.points.rowwise() += shift.transpose();
   s.sources.box = {s.sources.box.low + shift, s.sources.box.high + shift};
   return s;
@@ -138,13 +130,13 @@ Gap gap_between(const Surface& a, const Surface& b, int first, int second) {
   const double spacing = b.sources.spacing[nearest.second];
   if (nearest.distance < 3 * std::max(a.sources.spacing[nearest.first], spacing)) {
     const Approach approach = nearest_approach(
-        a.position, b.position,
+        a.sampler, b.sampler,
         {grid_direction(a.basis, nearest.first), grid_direction(b.basis, nearest.second), nearest.distance});
-    const Vec3 x = sample_points(a.position, approach.s.transpose()).row(0).transpose();
+    const Vec3 x = a.sampler.position(approach.s);
     gap.distance = approach.distance;
     // Where they cross, the least distance is zero up to rounding and has no side.
     constexpr double touching = 1e-5;  // of the spacing: what the search for a zero distance leaves
-    gap.crossing = gap.distance < touching * spacing || nearest_point(b.position, x, approach.t).inside;
+    gap.crossing = gap.distance < touching * spacing || nearest_point(b.sampler, x, approach.t).inside;
   }
   // Where boxes overlap one surface may hold the other, or they may cross by far.
   if (!gap.crossing && distance(a.sources.box, b.sources.box) == 0) gap.crossing = overlaps(a.sources, b.sources);
@@ -168,7 +160,8 @@ Search search_among(Plans& plans, std::span<const Coefficients> positions, const
   search.surfaces.resize(n);
   parallel_for(n, [&](int i) {
     const Basis& basis = plans.basis(positions[i].order, smooth_order(positions[i].order));
-    search.surfaces[i].emplace(Surface{positions[i], basis, make_sources(basis, positions[i])});
+    search.surfaces[i].emplace(
+        Surface{positions[i], PointSampler(positions[i]), basis, make_sources(basis, positions[i])});
   });
   Box all{search.surfaces[0]->sources.box};
   for (const auto& surface : search.surfaces) {

@@ -54,6 +54,7 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
   const int j = pair.source;
   const Sources& s = w.sources[j];
   const Matrix& targets = w.far.groups[pair.target].points;
+  const PointSampler surface(positions[j]);
   const double reach = options.near_spacings * s.spacing.maxCoeff();
   const double coarse_reach = options.coarse_spacings * (*w.far.sources)[j].spacing.maxCoeff();
   for (int k = 0; k < int(targets.rows()); ++k) {
@@ -63,7 +64,7 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
     if (options.near_rule && to_box < reach) {
       const auto [source, away] = nearest_source(s, x);
       if (away < (options.near_spacings + 1) * s.spacing[source]) {
-        NearestPoint nearest = nearest_point(positions[j], x, grid_direction(*w.source_basis[j], source));
+        NearestPoint nearest = nearest_point(surface, x, grid_direction(*w.source_basis[j], source));
         if (nearest.inside)
           throw std::domain_error(pair.target == j ? fmt::format("vesicle {} crosses its own image", j)
                                                    : fmt::format("vesicle {} crosses vesicle {}", pair.target, j));

@@ -84,10 +84,11 @@ void add_near(const FlowField& field, int j, PointBlock& block, Matrix& u) {
   constexpr double touching =
       1e-7;  // of the vesicle's size: nearer, the velocity is the membrane's to all digits wanted
   const Box& box = (*field.coarse)[j].box;
+  const PointSampler surface(source.position);
   for (std::size_t n = 0; n < view.near.size(); ++n) {
     const int k = view.near[n];
     const Vec3 x = block.points.row(k).transpose();
-    const NearestPoint nearest = nearest_point(source.position, x, view.start[n]);
+    const NearestPoint nearest = nearest_point(surface, x, view.start[n]);
     block.distance[k] = std::min(block.distance[k], nearest.distance);
     if (nearest.inside) block.within[k] = j;
     if (nearest.distance < touching * (box.high - box.low).norm()) {

@@ -105,3 +105,43 @@ TEST_CASE("resampling to a higher order and back changes nothing") {
   CHECK((resized(resized(c, 13), 6).values - c.values).norm() == 0);
   CHECK((Basis(13, 13).synthesize(resized(c, 13)).values - Basis(6, 13).synthesize(c).values).norm() < 1e-13);
 }
+
+TEST_CASE(
+    "a point of a surface taken alone lies on it, and its second derivatives add up to the Laplacian, at poles too") {
+  const auto p = GENERATE(0, 1, 7, 30);
+  std::srand(5);
+  Coefficients x{p, Matrix::Random(coefficient_count(p), 3)};
+  for (int n = 0; n <= p; ++n) x.values.middleRows(n * n, 2 * n + 1) *= std::pow(0.7, n);
+  Coefficients laplacian = x;
+  for (int n = 0; n <= p; ++n) laplacian.values.middleRows(n * n, 2 * n + 1) *= -n * (n + 1);
+  const PointSampler sampler(x);
+  for (const Vec3& given : {Vec3(0.3, -0.5, 0.9), Vec3(-0.2, 0, -0.1), Vec3(1, 0, 0), Vec3(1e-3, 1e-3, 1),
+                            Vec3(0, 0, 1), Vec3(1e-12, 0, -1)}) {
+    const Vec3 s = beside_the_pole(given.normalized());
+    INFO("p = " << p << ", s = " << s.transpose());
+    const PointTangents at = sampler.tangents(given);
+    const double size = x.values.norm() * (p + 1) * (p + 1);  // bound of all sums, and so of their rounding
+    CHECK((sampler.position(3 * given) - sample_points(x, given.normalized().transpose()).row(0).transpose()).norm() <
+          1e-14 * size);
+    CHECK((at.x - sampler.position(s)).norm() < 1e-14 * size);
+    // Circles of latitude of radius rho amplify rounding by its inverse square.
+    const double rounding = 1e-14 * (p + 1) * (p + 1) * size / std::min(1.0, at.pole * at.pole);
+    CHECK((at.aa + at.bb - sample_points(laplacian, s.transpose()).row(0).transpose()).norm() <
+          std::max(rounding, 1e-13));
+    // Central differences along great circles, which are exact to h^4 of the fifth derivative.
+    constexpr double h = 1e-3;
+    const auto along = [&](double u, double v) { return sampler.position(s + u * at.e1 + v * at.e2); };
+    const auto slope = [&](auto f) { return Vec3((8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h)); };
+    const double truncation = std::pow(h * (p + 1), 4) * size + 1e-12 * size;
+    CHECK((at.a - slope([&](double u) { return along(std::tan(u), 0); })).norm() < truncation);
+    CHECK((at.b - slope([&](double v) { return along(0, std::tan(v)); })).norm() < truncation + 1e-16 * size / at.pole);
+    CHECK(at.e1.cross(at.e2).dot(s) == Approx(1).epsilon(1e-14));
+    if (at.pole > 0.1) {  // mixed: the slope along e2, moved in parallel along e1
+      const Vec3 mixed = slope([&](double u) {
+        const PointTangents there = sampler.tangents(s + std::tan(u) * at.e1);
+        return there.b;  // meridians are great circles, so e2 is parallel along them
+      });
+      CHECK((at.ab - mixed).norm() < (p + 1) * (truncation + 1e-12 * size));
+    }
+  }
+}

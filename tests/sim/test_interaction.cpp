@@ -23,7 +23,8 @@ std::vector<Target> targets(const Coefficients& x, double gap) {
   for (int k = 3; k < basis.points(); k += 23) {
     const double t = basis.theta()[k % basis.latitudes()], f = basis.phi()[k / basis.latitudes()];
     const Vec3 at = g.x.value.row(k).transpose() + gap * g.n.row(k).transpose();
-    all.push_back({at, nearest_point(x, at, Vec3(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)))});
+    all.push_back({at, nearest_point(PointSampler(x), at,
+                                     Vec3(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)))});
   }
   return all;
 }
@@ -79,7 +80,7 @@ TEST_CASE(
     for (const Vec3& start : {pole, Vec3(pole + Vec3(0.07, -0.03, 0))})
       for (const double gap : {0.3, 0.01, 1e-5, -1e-5, -0.01}) {
         const Vec3 foot = sample_points(x, pole.transpose()).row(0).transpose();
-        const NearestPoint nearest = nearest_point(x, foot + gap * foot.normalized(), start);
+        const NearestPoint nearest = nearest_point(PointSampler(x), foot + gap * foot.normalized(), start);
         INFO("gap " << gap << ", start " << start.transpose());
         CHECK(nearest.distance == Approx(std::abs(gap)).epsilon(1e-6));  // 1e-6 beside the pole
         CHECK(nearest.inside == (gap < 0));
@@ -95,7 +96,7 @@ TEST_CASE(
   for (const double gap : {-0.01, 1e-3, 0.3})
     for (int k = 3; k < basis.points(); k += 7) {
       const Vec3 foot = g.x.value.row(k).transpose(), start = s.row(k).transpose() + 0.07 * Vec3(0.6, -0.5, 0.6);
-      const NearestPoint nearest = nearest_point(x, foot + gap * g.n.row(k).transpose(), start);
+      const NearestPoint nearest = nearest_point(PointSampler(x), foot + gap * g.n.row(k).transpose(), start);
       CHECK(nearest.distance == Approx(std::abs(gap)).epsilon(1e-12));
       CHECK((nearest.position - foot).norm() <
             1e-9);  // a root of rounding errors where the distance is flat: 1e-8 of 1e-16

@@ -152,7 +152,7 @@ TEST_CASE("labels are material: over a tank-treading period they stay with point
     for (Eigen::Index k = 0; k < carried.rows(); ++k) {
       Vec3 s = b.tracers.row(k).transpose();  // only where the search for the nearest point begins
       const auto velocity = [&](const Coefficients& x, const Coefficients& rate, const Vec3& at) {
-        s = nearest_point(x, at, s).parameter;
+        s = nearest_point(PointSampler(x), at, s).parameter;
         return Vec3(sample_points(rate, s.transpose()).row(0));
       };
       const Vec3 p = carried.row(k).transpose();
