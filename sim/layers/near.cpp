@@ -51,32 +51,31 @@ namespace {
 
 /// The graded grid about the nearest point, in the frame where that is the pole: nt x nf arrays.
 struct GradedGrid {
-  int p;
   double theta0, phi0;
   LegendreTable table;                   ///< of the graded colatitudes
-  Matrix fourier;                        ///< (2p+1) x nf
   Eigen::ArrayXXd r[3], n[3], rr, area;  ///< target - y, weighted normal, |r|^2, dA
 };
 
-/// Separable synthesis of one field given by its coefficients at the pole's frame: nt x (2p+1) spectra.
-Matrix spectra(const GradedGrid& g, const Matrix& values, const Matrix& legendre, int column) {
-  Matrix s(legendre.rows(), 2 * g.p + 1);
-  Vector c;
-  for (int m = -g.p; m <= g.p; ++m) {
-    const int k = std::abs(m), first = legendre_index(g.p, k, k), count = g.p - k + 1;
-    c.resize(count);
-    for (int n = k; n <= g.p; ++n) c[n - k] = values(coefficient_index(n, m), column);
-    s.col(g.p + m).noalias() = legendre.middleCols(first, count) * c;
+/// Separable synthesis of the fields given by their coefficients in the pole's frame: spectra of all of them, one below
+/// the other, (nt columns) x (2p+1).
+Matrix spectra(int p, const Matrix& values, const Matrix& legendre) {
+  const Eigen::Index nt = legendre.rows(), fields = values.cols();
+  Matrix s(nt * fields, 2 * p + 1), c(p + 1, fields);
+  for (int m = -p; m <= p; ++m) {
+    const int k = std::abs(m), first = legendre_index(p, k, k), count = p - k + 1;
+    for (int n = k; n <= p; ++n) c.row(n - k) = values.row(coefficient_index(n, m));
+    Eigen::Map<Matrix>(s.col(p + m).data(), nt, fields).noalias() =
+        legendre.middleCols(first, count) * c.topRows(count);
   }
   return s;
 }
 
-GradedGrid graded_grid(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
-                       NearOrder order) {
-  const int p = plan.order(), nt = order.latitudes, nf = order.longitudes, width = 2 * p + 1;
+GradedGrid graded_grid(const NearRule& rule, const RotationPlan& plan, const Coefficients& x, const Vec3& target,
+                       const NearestPoint& nearest) {
+  const int p = rule.degree;
+  const Eigen::Index nt = rule.latitudes.theta.size(), nf = rule.cosines.cols();
   const Vec3& s = nearest.parameter;
-  GradedGrid g{p, std::atan2(std::hypot(s[0], s[1]), s[2]), std::atan2(s[1], s[0]), {}, Matrix(width, nf), {}, {}, {},
-               {}};
+  GradedGrid g{std::atan2(std::hypot(s[0], s[1]), s[2]), std::atan2(s[1], s[0]), {}, {}, {}, {}, {}};
   const Matrix turned = plan.to_pole(resized(x, p).values, g.theta0, g.phi0);
 
   // Graded colatitudes. The metric at the pole is that of the longer tangent: the narrower width in the parameter.
@@ -88,32 +87,21 @@ GradedGrid graded_grid(const RotationPlan& plan, const Coefficients& x, const Ve
   }();
   const double metric = std::max(pole_tangents.row(0).norm(), pole_tangents.row(1).norm());
   const double eps = std::max(nearest.distance / metric, 1e-12), a = std::asinh(pi / eps);
-  const GaussLegendre rule = gauss_legendre(nt);
   Vector t(nt), weight(nt);
-  for (int i = 0; i < nt; ++i) {
-    const double u = 0.5 * (1 - std::cos(rule.theta[i]));
+  for (Eigen::Index i = 0; i < nt; ++i) {
+    const double u = 0.5 * (1 - std::cos(rule.latitudes.theta[i]));
     t[i] = eps * std::sinh(a * u);
-    weight[i] = 0.5 * rule.weight[i] * eps * a * std::cosh(a * u) * 2 * pi / nf;
+    weight[i] = 0.5 * rule.latitudes.weight[i] * eps * a * std::cosh(a * u) * 2 * pi / double(nf);
   }
   g.table = legendre_table(p, t, 1);
-  Matrix slope(width, nf);
-  for (int j = 0; j < nf; ++j)
-    for (int m = 0; m <= p; ++m) {
-      const double f = 2 * pi * j / nf, k = m == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi);
-      const double c = k * std::cos(m * f), d = k * std::sin(m * f);
-      g.fourier(p + m, j) = c, slope(p + m, j) = -m * d;
-      if (m > 0) g.fourier(p - m, j) = d, slope(p - m, j) = m * c;
-    }
-  Matrix y_t[3], y_f[3];
-  for (int d = 0; d < 3; ++d) {
-    const Matrix value = spectra(g, turned, g.table.value, d);
-    g.r[d] = target[d] - (value * g.fourier).array();
-    y_t[d] = spectra(g, turned, g.table.d1, d) * g.fourier;
-    y_f[d] = value * slope;
-  }
+  const Matrix values = spectra(p, turned, g.table.value);
+  const Matrix y = values * rule.cosines, y_f = values * rule.slopes;
+  const Matrix y_t = spectra(p, turned, g.table.d1) * rule.cosines;
+  const auto field = [&](const Matrix& all, int d) { return all.middleRows(d * nt, nt).array(); };
   for (int d = 0; d < 3; ++d) {
     const int e = (d + 1) % 3, f = (d + 2) % 3;
-    g.n[d] = (y_t[e].array() * y_f[f].array() - y_t[f].array() * y_f[e].array()).colwise() * weight.array();
+    g.r[d] = target[d] - field(y, d);
+    g.n[d] = (field(y_t, e) * field(y_f, f) - field(y_t, f) * field(y_f, e)).colwise() * weight.array();
   }
   g.rr = g.r[0].square() + g.r[1].square() + g.r[2].square();
   g.area = (g.n[0].square() + g.n[1].square() + g.n[2].square()).sqrt();
@@ -140,46 +128,59 @@ NearOrder near_order_for(int degree, double error) {
   return {latitudes, latitudes + std::max(0, latitudes - 32)};  // longitudes so as measured
 }
 
-PointRow near_row(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
-                  NearOrder order, bool with_double) {
-  const GradedGrid g = graded_grid(plan, x, target, nearest, order);
-  const int p = g.p, nc = coefficient_count(p);
+NearRule near_rule(int degree, NearOrder order) {
+  const int p = degree, nf = order.longitudes;
+  NearRule rule{p, gauss_legendre(order.latitudes), Matrix(2 * p + 1, nf), Matrix(2 * p + 1, nf)};
+  for (int j = 0; j < nf; ++j)
+    for (int m = 0; m <= p; ++m) {
+      const double f = 2 * pi * j / nf, k = longitude_norm(m);
+      const double c = k * std::cos(m * f), d = k * std::sin(m * f);
+      rule.cosines(p + m, j) = c, rule.slopes(p + m, j) = -m * d;
+      if (m > 0) rule.cosines(p - m, j) = d, rule.slopes(p - m, j) = m * c;
+    }
+  return rule;
+}
+
+PointRow near_row(const NearRule& rule, const RotationPlan& plan, const Coefficients& x, const Vec3& target,
+                  const NearestPoint& nearest, bool with_double) {
+  const GradedGrid g = graded_grid(rule, plan, x, target, nearest);
+  const int p = rule.degree, blocks = with_double ? 12 : 6;
+  const Eigen::Index nt = g.rr.rows();
   const Eigen::ArrayXXd inverse = g.rr.rsqrt();
   const KernelTensor<Eigen::ArrayXXd> single = single_kernel(g, inverse);
   const Eigen::ArrayXXd outer = with_double ? dual_outer(g, inverse) : Eigen::ArrayXXd();
 
-  // The transposed synthesis of the 12 components.
-  PointRow row{Matrix(nc, 6), with_double ? Matrix(nc, 6) : Matrix()};
+  // The transposed synthesis of all components together: those of the single layer, then those of the double layer.
+  Matrix kernels(blocks * nt, g.rr.cols());
   int block = 0;
   for (int c = 0; c < 3; ++c)
     for (int e = c; e < 3; ++e, ++block) {
       const Eigen::ArrayXXd rce = g.r[c] * g.r[e];
-      for (const bool dual : {false, true}) {
-        if (dual && !with_double) continue;
-        const Matrix kernel = dual     ? Matrix(outer * rce)
-                              : c == e ? Matrix(single.even + single.outer * rce)
-                                       : Matrix(single.outer * rce);
-        const Matrix spectrum = kernel * g.fourier.transpose();  // nt x (2p+1)
-        auto out = (dual ? row.dual : row.single).col(block);
-        for (int m = -p; m <= p; ++m) {
-          const int k = std::abs(m), first = legendre_index(p, k, k), count = p - k + 1;
-          const Vector column = g.table.value.middleCols(first, count).transpose() * spectrum.col(p + m);
-          for (int l = k; l <= p; ++l) out[coefficient_index(l, m)] = column[l - k];
-        }
-      }
+      auto kernel = kernels.middleRows(block * nt, nt).array();
+      kernel = single.outer * rce;
+      if (c == e) kernel += single.even;
+      if (with_double) kernels.middleRows((6 + block) * nt, nt).array() = outer * rce;
     }
-  row.single = plan.from_pole(row.single, g.theta0, g.phi0);
-  if (with_double) row.dual = plan.from_pole(row.dual, g.theta0, g.phi0);
-  return row;
+  const Matrix spectrum = kernels * rule.cosines.transpose();  // (nt blocks) x (2p+1)
+  Matrix rows(coefficient_count(p), blocks), part(p + 1, blocks);
+  for (int m = -p; m <= p; ++m) {
+    const int k = std::abs(m), first = legendre_index(p, k, k), count = p - k + 1;
+    const Eigen::Map<const Matrix> column(spectrum.col(p + m).data(), nt, blocks);
+    part.topRows(count).noalias() = g.table.value.middleCols(first, count).transpose() * column;
+    for (int l = k; l <= p; ++l) rows.row(coefficient_index(l, m)) = part.row(l - k);
+  }
+  rows = plan.from_pole(rows, g.theta0, g.phi0);
+  return {rows.leftCols(6), with_double ? Matrix(rows.rightCols(6)) : Matrix()};
 }
 
-Vec3 near_velocity(const RotationPlan& plan, const Coefficients& x, const Vec3& target, const NearestPoint& nearest,
-                   NearOrder order, const Coefficients& force, const Coefficients* dual) {
-  const GradedGrid g = graded_grid(plan, x, target, nearest, order);
+Vec3 near_velocity(const NearRule& rule, const RotationPlan& plan, const Coefficients& x, const Vec3& target,
+                   const NearestPoint& nearest, const Coefficients& force, const Coefficients* dual) {
+  const GradedGrid g = graded_grid(rule, plan, x, target, nearest);
   const auto sampled = [&](const Coefficients& density) {
-    const Matrix turned = plan.to_pole(resized(density, g.p).values, g.theta0, g.phi0);
+    const Matrix turned = plan.to_pole(resized(density, rule.degree).values, g.theta0, g.phi0);
+    const Matrix all = spectra(rule.degree, turned, g.table.value) * rule.cosines;
     std::array<Eigen::ArrayXXd, 3> values;
-    for (int d = 0; d < 3; ++d) values[d] = (spectra(g, turned, g.table.value, d) * g.fourier).array();
+    for (int d = 0; d < 3; ++d) values[d] = all.middleRows(d * g.rr.rows(), g.rr.rows()).array();
     return values;
   };
   const Eigen::ArrayXXd inverse = g.rr.rsqrt();

@@ -20,6 +20,14 @@ struct NearOrder {
 /// unit size, down to gaps of 0.005 radii: measured for p from 6 to 24 (docs/stepping.md).
 NearOrder near_order_for(int degree, double error);
 
+/// What all targets beside vesicles of one degree have in common; made in the time of a row.
+struct NearRule {
+  int degree;               ///< of the rotation plan that it is used with
+  GaussLegendre latitudes;  ///< before they are graded
+  Matrix cosines, slopes;   ///< (2p+1) x longitudes: cos and sin of m phi, normalised, and their derivatives
+};
+NearRule near_rule(int degree, NearOrder);
+
 struct NearestPoint {
   Vec3 parameter = Vec3::UnitZ();  ///< on the unit sphere
   Vec3 position = Vec3::Zero();
@@ -35,13 +43,12 @@ NearestPoint nearest_point(const PointSampler& position, const Vec3& target, con
 struct PointRow {
   Matrix single, dual;  ///< dual: empty unless asked for
 };
-PointRow near_row(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&, NearOrder,
-                  bool with_double);
+PointRow near_row(const NearRule&, const RotationPlan&, const Coefficients& position, const Vec3& target,
+                  const NearestPoint&, bool with_double);
 
-/// The same applied directly to densities of degree <= p, for a point that is evaluated once: S force + D dual
-/// (nullptr: none).
-Vec3 near_velocity(const RotationPlan&, const Coefficients& position, const Vec3& target, const NearestPoint&,
-                   NearOrder, const Coefficients& force, const Coefficients* dual);
+/// The same applied directly to densities, for a point that is evaluated once: S force + D dual (nullptr: none).
+Vec3 near_velocity(const NearRule&, const RotationPlan&, const Coefficients& position, const Vec3& target,
+                   const NearestPoint&, const Coefficients& force, const Coefficients* dual);
 
 /// Velocity of a row: sum over the tensor blocks.
 Vec3 apply_row(const Matrix& row, const Matrix& density);

@@ -55,6 +55,7 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
   const Sources& s = w.sources[j];
   const Matrix& targets = w.far.groups[pair.target].points;
   const PointSampler surface(positions[j]);
+  const NearRule rule = near_rule(rotation.order(), near_order(options, positions[j].order));
   const double reach = options.near_spacings * s.spacing.maxCoeff();
   const double coarse_reach = options.coarse_spacings * (*w.far.sources)[j].spacing.maxCoeff();
   for (int k = 0; k < int(targets.rows()); ++k) {
@@ -70,8 +71,7 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
                                                    : fmt::format("vesicle {} crosses vesicle {}", pair.target, j));
         if (nearest.distance < options.near_spacings * s.spacing[source]) {
           pair.near.push_back(k);
-          pair.rows.push_back(
-              near_row(rotation, positions[j], x, nearest, near_order(options, positions[j].order), w.dual[j]));
+          pair.rows.push_back(near_row(rule, rotation, positions[j], x, nearest, w.dual[j]));
           nearest.position += pair.shift;
           pair.nearest.push_back(nearest);
           continue;

@@ -85,6 +85,7 @@ void add_near(const FlowField& field, int j, PointBlock& block, Matrix& u) {
       1e-7;  // of the vesicle's size: nearer, the velocity is the membrane's to all digits wanted
   const Box& box = (*field.coarse)[j].box;
   const PointSampler surface(source.position);
+  const NearRule rule = near_rule(source.rotation->order(), field.options.near_order);
   for (std::size_t n = 0; n < view.near.size(); ++n) {
     const int k = view.near[n];
     const Vec3 x = block.points.row(k).transpose();
@@ -95,8 +96,8 @@ void add_near(const FlowField& field, int j, PointBlock& block, Matrix& u) {
       block.touching.emplace_back(k, sample_points(source.velocity, nearest.parameter.transpose()).row(0).transpose());
       continue;
     }
-    u.row(k) += near_velocity(*source.rotation, source.position, x, nearest, field.options.near_order,
-                              source.densities.force, source.viscosity_contrast != 1 ? &source.densities.dual : nullptr)
+    u.row(k) += near_velocity(rule, *source.rotation, source.position, x, nearest, source.densities.force,
+                              source.viscosity_contrast != 1 ? &source.densities.dual : nullptr)
                     .transpose();
   }
   for (std::size_t l = 0; l < view.finer.size(); ++l) {

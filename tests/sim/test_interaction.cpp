@@ -34,8 +34,8 @@ std::pair<double, double> near_errors(const Coefficients& x, double gap, NearOrd
   const RotationPlan plan(x.order);
   double single = 0, dual = 0;
   for (const Target& t : targets(x, gap)) {
-    const PointRow row = near_row(plan, x, t.x, t.nearest, order, true),
-                   exact = near_row(plan, x, t.x, t.nearest, {220, 300}, true);
+    const PointRow row = near_row(near_rule(plan.order(), order), plan, x, t.x, t.nearest, true),
+                   exact = near_row(near_rule(plan.order(), {220, 300}), plan, x, t.x, t.nearest, true);
     const Vec3 s = apply_row(exact.single, x.values);
     single = std::max(single, (apply_row(row.single, x.values) - s).norm() / s.norm());
     dual = std::max(dual, (apply_row(row.dual, x.values) - apply_row(exact.dual, x.values)).norm() / 0.5);
@@ -127,10 +127,12 @@ TEST_CASE("the near rule gives at once what its rows give") {
                      dual = test::smooth_field(7, 7, 3, 4);
   const RotationPlan plan(7);
   for (const Target& t : targets(x, 0.02)) {
-    const PointRow row = near_row(plan, x, t.x, t.nearest, {20, 24}, true);
+    const PointRow row = near_row(near_rule(plan.order(), {20, 24}), plan, x, t.x, t.nearest, true);
     const Vec3 single = apply_row(row.single, force.values), both = single + apply_row(row.dual, dual.values);
-    CHECK((near_velocity(plan, x, t.x, t.nearest, {20, 24}, force, nullptr) - single).norm() < 1e-13);
-    CHECK((near_velocity(plan, x, t.x, t.nearest, {20, 24}, force, &dual) - both).norm() < 1e-12);
+    CHECK((near_velocity(near_rule(plan.order(), {20, 24}), plan, x, t.x, t.nearest, force, nullptr) - single).norm() <
+          1e-13);
+    CHECK((near_velocity(near_rule(plan.order(), {20, 24}), plan, x, t.x, t.nearest, force, &dual) - both).norm() <
+          1e-12);
   }
 }
 
@@ -154,7 +156,8 @@ TEST_CASE("the double layer of a constant is 0 just outside and -1 just inside")
   const RotationPlan plan(8);
   for (const double gap : {1e-1, 1e-3, -1e-1, -1e-3})
     for (const Target& t : targets(x, gap)) {
-      const Vec3 u = apply_row(near_row(plan, x, t.x, t.nearest, {48, 64}, true).dual, one.values);
+      const Vec3 u =
+          apply_row(near_row(near_rule(plan.order(), {48, 64}), plan, x, t.x, t.nearest, true).dual, one.values);
       const Vec3 expected = gap > 0 ? Vec3(Vec3::Zero()) : Vec3(-1, 2, -0.5);
       CHECK((u - expected).norm() < 1e-5);
     }
@@ -171,7 +174,9 @@ TEST_CASE(
       const double r = t.x.norm();
       const Vec3 e = t.x / r, U(1, 0, 0);
       const Vec3 stokes = 0.75 / r * (U + e * e.dot(U)) + 0.25 / (r * r * r) * (U - 3 * e * e.dot(U));
-      CHECK((apply_row(near_row(plan, x, t.x, t.nearest, {48, 64}, false).single, f.values) - stokes).norm() < 1e-5);
+      CHECK((apply_row(near_row(near_rule(plan.order(), {48, 64}), plan, x, t.x, t.nearest, false).single, f.values) -
+             stokes)
+                .norm() < 1e-5);
     }
 }
 
