@@ -98,6 +98,10 @@ axis = [1, 0, 0]
 order = 8
 viscosity_contrast = 10.0
 bending_modulus = 0.01
+
+[numerics]
+repulsion_strength = 100.0
+repulsion_range = 0.02
 )";
 
 }  // namespace app

@@ -30,3 +30,9 @@ fi
 
 "$program" run "$scene" -o "$folder/out" "${shorten[@]}" >"$folder/log"
 grep -q ' 0 frames drawn' "$folder/log" || fail "a second run drew frames again"
+
+# To its end, where that takes seconds.
+vesicles=$("$program" info "$folder/out/trajectory.h5" | sed -n 's/^vesicles *\([0-9]*\),.*/\1/p')
+if [ "$vesicles" -le 2 ]; then
+  "$program" simulate "$scene" -o "$folder/whole.h5" >"$folder/log" || fail "the whole run ends before its time"
+fi
