@@ -389,6 +389,83 @@ TEST_CASE("placements fill the cell and keep their distance from images, too") {
   }
 }
 
+TEST_CASE(
+    "vesicles are placed at random at a volume fraction of 0.45, apart, turned every way, the same from one seed") {
+  for (const auto& [nu, orientation] :
+       {std::pair(0.95, "random"), {0.9, "random"}, {0.9, "as-given"}, {1.0, "random"}}) {
+    INFO(nu << ", " << orientation);
+    VesicleParameters v = test::vesicle(nu < 1 ? "prolate" : "sphere", nu, 6);
+    PlacementParameters p;
+    p.kind = "box";
+    p.orientation = orientation;
+    p.count = 32;
+    const double side = std::cbrt(p.count * 4 * test::pi / 3 * nu / 0.45);
+    Scene s = scene_of({v}, {side, side, side}, {shear(1)});
+    s.placements = {p};
+    const Scene full = placed(s), again = placed(s);
+    REQUIRE(int(full.vesicles.size()) == p.count);
+    Plans plans;
+    std::vector<Coefficients> x;
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+    for (std::size_t k = 0; k < full.vesicles.size(); ++k) {
+      const VesicleParameters& one = full.vesicles[k];
+      x.push_back(initial_position(one));
+      CHECK((one.center.cwiseAbs().array() <= side / 2).all());
+      CHECK(one.center == again.vesicles[k].center);
+      if (!one.axis) continue;
+      CHECK(*one.axis == *again.vesicles[k].axis);
+      axes += *one.axis * one.axis->transpose() / p.count;
+    }
+    const Gap gap = smallest_gap(plans, x, cell_at(s, 0));
+    CHECK(!gap.crossing);
+    CHECK(gap.distance >= default_placement_gap * (1 - 1e-6));
+    // The tensor of random directions: 1/3 of the unit tensor, entries spread by sqrt(4/45/32) = 0.05.
+    if (orientation == std::string("random"))
+      CHECK((axes - Eigen::Matrix3d::Identity() / 3).cwiseAbs().maxCoeff() < 0.21);
+  }
+}
+
+TEST_CASE("pairs of densely placed vesicles lie in all directions alike") {
+  VesicleParameters v = test::vesicle("prolate", 0.95, 4);
+  PlacementParameters p;
+  p.kind = "box";
+  p.orientation = "random";
+  p.count = 120;
+  const double side = std::cbrt(p.count * 4 * test::pi / 3 * 0.95 / 0.45);
+  Scene s = scene_of({v}, {side, side, side}, {shear(1)});
+  s.placements = {p};
+  const Scene full = placed(s);
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
+  int pairs = 0;
+  for (std::size_t i = 0; i < full.vesicles.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      Vec3 away = full.vesicles[i].center - full.vesicles[j].center;
+      away -= side * Vec3((away / side).array().round());
+      if (away.norm() > 2.6) continue;  // neighbours
+      ++pairs;
+      directions += away.normalized() * away.normalized().transpose();
+    }
+  REQUIRE(pairs > 300);
+  // Entries of directions at random are spread by sqrt(4/45/pairs) < 0.017.
+  CHECK((directions / pairs - Eigen::Matrix3d::Identity() / 3).cwiseAbs().maxCoeff() < 0.085);
+}
+
+TEST_CASE("what cannot be moved apart is refused with what is missing, and a search for places can be stopped") {
+  VesicleParameters v = test::vesicle("sphere", 1, 4);
+  PlacementParameters p;
+  p.kind = "box";
+  p.count = 8;
+  p.gap = 0.0;
+  const double side = std::cbrt(p.count * 4 * test::pi / 3 / 0.69);  // beyond random close packing, 0.64
+  Scene s = scene_of({v}, {side, side, side}, {shear(1)});
+  s.placements = {p};
+  CHECK_THROWS_WITH(placed(s),
+                    Catch::Contains("8 vesicles could not be placed at random at a volume fraction of 0.69"));
+  int asked = 0;
+  CHECK_THROWS_AS(placed(s, [&] { return ++asked > 3; }), std::system_error);
+  CHECK(asked == 4);
+}
+
 TEST_CASE("streams carry a vesicle the same way on each of their axes, back on every other one, and copies together") {
   constexpr double l = 6;
   FlowParameters streams;
