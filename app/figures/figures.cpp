@@ -118,7 +118,7 @@ void add_flow(render::FigureInput& input, const FigureSource& source) {
 
 bool takes_several(std::string_view kind) {
   return kind == "time-series" || kind == "inclination" || kind == "phase" || kind == "phase-diagram" ||
-         kind == "tank-treading";
+         kind == "tank-treading" || kind == "pair-distribution";
 }
 
 render::Figure make_figure(const std::vector<FigureSource>& sources, const render::FigureParameters& parameters,
@@ -150,6 +150,8 @@ render::Figure make_figure(const std::vector<FigureSource>& sources, const rende
       } else if (kind.name == "spectra") {
         take(render::chosen_times(times, parameters));
         input.plots = spectra_plots(input);
+      } else if (kind.name == "pair-distribution") {
+        input.plots = pair_plots(sources, parameters);
       } else {
         input.plots = steady_plots(sources);
       }

@@ -4,7 +4,10 @@
 #include "app/figures/motions.h"
 #include "app/figures/tank_treading.h"
 
+#include "sim/core/digits.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/measures/rheology.h"
+#include "sim/membrane/cell.h"
 #include "sim/sphere/norms.h"
 #include "sim/surface/dealias.h"
 
@@ -28,6 +31,33 @@ double value_at(const render::Series& s, double time) {
   const auto k = static_cast<std::size_t>(after - s.times.begin());
   const double share = (time - s.times[k - 1]) / (s.times[k] - s.times[k - 1]);
   return s.values[k - 1] + share * (s.values[k] - s.values[k - 1]);
+}
+
+/// Centres in the states from a time on, with their cells.
+std::vector<sim::CentresInCell> centres_from(const FigureSource& source, double from) {
+  const sim::TrajectoryReader& trajectory = source.trajectory;
+  sim::Plans plans;
+  std::vector<sim::CentresInCell> states;
+  for (std::int64_t k = 0; k < trajectory.count(); ++k) {
+    if (trajectory.time(k) < from) continue;
+    const sim::State state = trajectory.state(k);
+    sim::CentresInCell& now = states.emplace_back();
+    now.cell = *sim::cell_at(source.settings.scene, state.time);
+    for (const sim::VesicleState& v : state.vesicles) now.centres.push_back(sim::measure(plans, v, 1, 1).center);
+  }
+  return states;
+}
+
+/// Where a mean begins: all times from there on take part.
+double start_of_mean(const FigureSource& source, const std::optional<double>& from) {
+  const double end = source.trajectory.time(source.trajectory.count() - 1);
+  if (!from) return 2 * end / 3 * (1 - 1e-9);  // a saved state at just this time is one of them
+  if (*from > end) {
+    const auto [last, wanted] = sim::told_apart(end, *from, 6);
+    throw std::invalid_argument(
+        fmt::format("'{}' ends at t = {}: no state is left from figure.from = {} on", source.file, last, wanted));
+  }
+  return *from * (1 - 1e-9);
 }
 
 }  // namespace
@@ -128,6 +158,52 @@ std::vector<render::Plot> steady_plots(const std::vector<FigureSource>& sources)
     }
   }
   return tank_treading_plots(points);
+}
+
+std::vector<render::Plot> pair_plots(const std::vector<FigureSource>& sources, const render::FigureParameters& p) {
+  constexpr double width = 0.1;  // of a bin, R0: a film between vesicles is some 0.1 thick
+  constexpr int fewest = 10, most = 400;
+  render::Plot plot;
+  plot.x = {.label = "r / R_{0}", .grid = true};
+  plot.y = {.label = "g(r)", .grid = true};
+  double reach = 0;
+  for (const FigureSource& source : sources) {
+    const sim::Scene& scene = source.settings.scene;
+    if (!scene.cell.size)
+      throw std::runtime_error(fmt::format(
+          "'{}' has no periodic [cell], and without one the density of pairs at random is not known", source.file));
+    if (source.trajectory.layout().vesicles < 2)
+      throw std::runtime_error(fmt::format("'{}' has a single vesicle, which makes no pair", source.file));
+    const double length = length_of(source.trajectory), half = scene.cell.size->minCoeff() / 2;
+    const int bins = std::clamp(static_cast<int>(std::lround(half / (width * length))), fewest, most);
+    const sim::MeanPairs pairs =
+        sim::mean_pairs(*scene.cell.size, bins, centres_from(source, start_of_mean(source, p.from)));
+    render::Curve curve;
+    curve.name = source.name;
+    curve.csv_name = source.name.empty() ? std::string(plot.y.label) : source.name;
+    curve.colour = plot.curves.size();
+    curve.band = true;
+    curve.error = pairs.error;
+    if (sources.size() > 1) {
+      curve.marker = render::group_marker(curve.colour);
+      curve.phase = (static_cast<double>(curve.colour) + 0.5) / static_cast<double>(sources.size());
+    }
+    for (const auto& row : pairs.rows) {
+      curve.x.push_back((row.from + row.to) / 2 / length);
+      curve.y.push_back(row.share);
+    }
+    reach = std::max(reach, half / length);
+    plot.curves.push_back(std::move(curve));
+  }
+  render::Curve one;
+  one.x = {0, reach};
+  one.y = {1, 1};
+  one.dash = 1;
+  one.guide = true;
+  one.csv_name = std::string("points at random");
+  plot.curves.push_back(std::move(one));
+  plot.x_range = render::Range{0, reach};
+  return {plot};
 }
 
 }  // namespace app

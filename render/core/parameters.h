@@ -359,6 +359,7 @@ struct FigureParameters {
   std::string background = "speed";
   std::vector<std::string> axes;  ///< of a phase diagram; empty: found
   std::string vesicles = "pictures";
+  std::optional<double> from;  ///< of a mean over time
 };
 
 template <class P, class V>
@@ -472,6 +473,12 @@ void visit(P& p, V&& v) {
               .meaning = "in a phase diagram: pictures in the style of the view, coloured by the motion, or sections",
               .choices = diagram_vesicles},
     p.vesicles);
+  v(Parameter{.name = "from",
+              .unit = "time",
+              .meaning = "of a pair distribution: states from then on are averaged",
+              .minimum = 0,
+              .when_absent = "the last third of the run"},
+    p.from);
 }
 
 }  // namespace render

@@ -30,6 +30,11 @@ const std::vector<FigureRow>& figures() {
       {"tank-treading",
        "angle and frequency of tank-treading against reduced volume, one trajectory a point, beside the literature",
        FigureNeeds::plots, draw_plots},
+      {"pair-distribution",
+       "how many pairs of vesicles of a periodic cell are at each distance, over those of points at random, mean over "
+       "a "
+       "time",
+       FigureNeeds::plots, draw_plots},
       {"phase-diagram",
        "motion of vesicles over two parameters in which their scenes differ, with their sections in the course of it",
        FigureNeeds::diagram, draw_phase_diagram},

@@ -33,6 +33,7 @@ struct Curve {
   std::string part;  ///< in the key of its panel; empty: not there
   std::vector<double> x, y;
   std::vector<double> error;      ///< half lengths of bars; empty: none
+  bool band = false;              ///< errors are a tinted band along the curve instead
   std::size_t colour = 0;         ///< number of the palette
   std::optional<double> instant;  ///< 0..1: a colour between early and late instead of the palette
   std::optional<Marker> marker;
@@ -40,6 +41,7 @@ struct Curve {
   bool line = true;
   int dash = 0;
   bool faint = false;          ///< one of many: thin
+  bool guide = false;          ///< a value to compare with: thin, in ink
   bool ink_in_legend = false;  ///< the name tells a mark or dash, whatever the colour
   std::string csv_name = {};   ///< in the CSV; empty: the name and part, or the curve's number
 };

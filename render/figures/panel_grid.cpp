@@ -35,6 +35,7 @@ Range range_of_axis(const std::vector<double>& values, Scale scale, bool absciss
 }
 
 Colour colour_of(const Theme& theme, const Curve& curve) {
+  if (curve.guide) return theme.ink;
   return curve.instant ? on_ground(theme, colour_of_time(*curve.instant)) : curve_colour(theme, curve.colour);
 }
 
@@ -295,11 +296,16 @@ std::optional<PlacedPlots> placed_with(const Theme& theme, const Grid& grid, con
 void draw_one(const Pen& pen, const PlacedPlot& p) {
   draw_grid(pen, p.panel, p.axes);
   for (const Curve& curve : p.plot.curves) {
+    if (!curve.band) continue;
+    const Points c = in_panel(p.plot, curve);
+    draw_band(pen, p.panel, c.first, c.second, curve.error, colour_of(pen.theme, curve));
+  }
+  for (const Curve& curve : p.plot.curves) {
     const Points c = in_panel(p.plot, curve);
     const Colour colour = colour_of(pen.theme, curve);
     if (curve.line)
       draw_polyline(pen, p.panel, c.first, c.second,
-                    {colour, curve.faint ? 0.5 : 1, curve.faint ? 0.7 : 1, curve.dash});
+                    {colour, curve.faint || curve.guide ? 0.5 : 1, curve.faint ? 0.7 : 1, curve.dash});
     if (!curve.marker) continue;
     if (curve.phase >= 0)
       draw_markers_along(pen, p.panel, c.first, c.second, *curve.marker, colour, 8 * pen.theme.text, curve.phase);

@@ -52,6 +52,22 @@ void draw_polyline(const Pen& pen, const Panel& p, const std::vector<double>& x,
   cairo_restore(cairo);
 }
 
+void draw_band(const Pen& pen, const Panel& p, const std::vector<double>& x, const std::vector<double>& y,
+               const std::vector<double>& error, const Colour& colour) {
+  constexpr double tint = 0.25;
+  cairo_t* cairo = pen.cairo;
+  const std::size_t n = std::min({x.size(), y.size(), error.size()});
+  cairo_save(cairo);
+  clip_to(cairo, p);
+  cairo_new_path(cairo);
+  for (std::size_t i = 0; i < n; ++i) cairo_line_to(cairo, p.page_x(x[i]), p.page_y(y[i] + error[i]));
+  for (std::size_t i = n; i-- > 0;) cairo_line_to(cairo, p.page_x(x[i]), p.page_y(y[i] - error[i]));
+  cairo_close_path(cairo);
+  set_colour(pen, colour, tint);
+  cairo_fill(cairo);
+  cairo_restore(cairo);
+}
+
 void draw_closed_curve(const Pen& pen, const Panel& p, const ClosedCurve& curve, const Eigen::Vector2d& shift,
                        const Stroke& stroke, double fill_opacity) {
   cairo_t* cairo = pen.cairo;

@@ -20,6 +20,9 @@ inline constexpr int dash_count = 5;
 /// Clipped to the panel. Points that are not finite interrupt the line.
 void draw_polyline(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
                    const Stroke& stroke);
+/// What lies within `error` of a line, tinted; clipped to the panel.
+void draw_band(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+               const std::vector<double>& error, const Colour& colour);
 /// `shift` is added to the points; fill_opacity > 0 tints the inside.
 void draw_closed_curve(const Pen& pen, const Panel& panel, const ClosedCurve& curve, const Eigen::Vector2d& shift,
                        const Stroke& stroke, double fill_opacity = 0);

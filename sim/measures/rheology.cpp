@@ -70,4 +70,28 @@ std::vector<PairDistribution::Row> PairDistribution::rows() const {
   return all;
 }
 
+MeanPairs mean_pairs(const Vec3& size, int bins, std::span<const CentresInCell> states, int blocks) {
+  const auto over = [&](std::size_t first, std::size_t end) {
+    PairDistribution pairs(size, bins);
+    for (std::size_t k = first; k < end; ++k) pairs.add(states[k].centres, states[k].cell);
+    return pairs.rows();
+  };
+  MeanPairs mean{over(0, states.size()), {}};
+  const std::size_t parts = std::min(static_cast<std::size_t>(blocks), states.size());
+  if (parts < 2) return mean;
+  std::vector<double> sum(mean.rows.size(), 0), squares = sum;
+  for (std::size_t b = 0; b < parts; ++b) {
+    const auto rows = over(b * states.size() / parts, (b + 1) * states.size() / parts);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const double away = rows[k].share - mean.rows[k].share;  // small, so that the squares do not cancel
+      sum[k] += away;
+      squares[k] += away * away;
+    }
+  }
+  const auto n = static_cast<double>(parts);
+  for (std::size_t k = 0; k < sum.size(); ++k)
+    mean.error.push_back(std::sqrt(std::max(0.0, squares[k] - sum[k] * sum[k] / n) / (n - 1) / n));
+  return mean;
+}
+
 }  // namespace sim

@@ -59,4 +59,17 @@ class PairDistribution {
   std::vector<double> counts_;
 };
 
+/// Centres in any cells of a lattice whose sides are the columns of `cell`.
+struct CentresInCell {
+  std::vector<Vec3> centres;
+  Eigen::Matrix3d cell;
+};
+struct MeanPairs {
+  std::vector<PairDistribution::Row> rows;
+  std::vector<double> error;  ///< standard error of each share; empty with a single state
+};
+/// The distribution over all states, in the order of time. Its error is that of the mean of up to `blocks` blocks of
+/// neighbouring states, whose differences hold the correlation in time as far as blocks are longer than it.
+MeanPairs mean_pairs(const Vec3& cell_size, int bins, std::span<const CentresInCell> states, int blocks = 8);
+
 }  // namespace sim

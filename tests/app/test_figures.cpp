@@ -36,13 +36,17 @@ struct Bench {
   }
 };
 
+/// Two vesicles in a periodic cell.
+const std::vector<std::string> in_a_cell{"cell.size=[6, 5, 4.8]", "placement={kind=\"lattice\", count=2}"};
+
 }  // namespace
 
 TEST_CASE("every kind of figure is drawn from a trajectory, at the size that is asked for", "[figure]") {
-  const Bench bench, other({"vesicle.viscosity_contrast=3", "vesicle.reduced_volume=0.8"});
+  const Bench single, other({"vesicle.viscosity_contrast=3", "vesicle.reduced_volume=0.8"}), cell(in_a_cell);
   for (const render::FigureRow& row : render::figures()) {
     INFO(row.name);
     const std::string name(row.name);
+    const Bench& bench = name == "pair-distribution" ? cell : single;
     std::vector<std::string> words{"--size", "320x240px",          "--theme", "slides",
                                    "--set",  "figure.spacing=0.6", "--set",   "figure.panels=2"};
     if (row.needs == render::FigureNeeds::diagram) words.insert(words.begin(), other.trajectory);
@@ -103,6 +107,29 @@ TEST_CASE("a figure that cannot be says why in one sentence", "[figure]") {
   CHECK_THAT(complaint("overlay", {"--set", "figure.plane_normal=[0,0,0]"}), Contains("plane_normal"));
   CHECK_THAT(complaint("overlay", {"--set", "figure.times=[0.30000002]"}),
              Contains("to t = 0.3; there is no t = 0.30000002 for figure.times"));
+}
+
+TEST_CASE("a figure of pair distributions counts pairs in a cell from a time on, and says what it lacks elsewhere",
+          "[figure]") {
+  const Bench bench(in_a_cell), alone({"cell.size=[6, 4, 4]"}), free;
+  const support::Outcome drawn = bench.figure("pair-distribution", {bench.trajectory});
+  INFO(drawn.err);
+  REQUIRE(drawn.status == 0);
+  // Two vesicles 2.5 apart along y, and their images no nearer: up to half of a side, 2.4, there is no pair.
+  std::istringstream lines(support::read_file(bench.folder / "pair-distribution.csv"));
+  int none = 0, one = 0;
+  for (std::string line; std::getline(lines, line);) {
+    none += line.find(",0,0") != std::string::npos;
+    one += line.find("points at random") != std::string::npos;
+  }
+  CHECK(none == 48);  // two curves of 24 bins
+  CHECK(one == 2);
+  CHECK_THAT(bench.figure("pair-distribution", {"--set", "figure.from=0.4"}).err,
+             Contains("ends at t = 0.3: no state is left from figure.from = 0.4 on"));
+  CHECK_THAT(alone.figure("pair-distribution", {}).err, Contains("a single vesicle, which makes no pair"));
+  const support::Outcome refused = free.figure("pair-distribution", {});
+  CHECK(refused.status == 1);
+  CHECK_THAT(refused.err, Contains("t.h5' has no periodic [cell]"));
 }
 
 TEST_CASE("a figure of tank-treading refuses a vesicle that tumbles and says what a short run leaves open",

@@ -321,6 +321,51 @@ TEST_CASE("pairs of points at random have a distribution of 1, those of a lattic
   CHECK(lattice.rows()[1].share == Approx(3 / (3 / 64.0 * 4 * test::pi / 3 * 7)));
 }
 
+TEST_CASE("the stated error of a pair distribution is how far that of points at random is from 1") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Eigen::Matrix3d cell = Vec3(5, 4, 6).asDiagonal();
+  cell(0, 2) = -2;
+  std::vector<CentresInCell> states(160);
+  for (CentresInCell& s : states) {
+    s.cell = cell;
+    for (int k = 0; k < 40; ++k) s.centres.emplace_back(cell * Vec3(uniform(random), uniform(random), uniform(random)));
+  }
+  constexpr int bins = 40;
+  const MeanPairs mean = mean_pairs(Vec3(5, 4, 6), bins, states);
+  REQUIRE(mean.error.size() == std::size_t(bins));
+  double squares = 0;
+  int counted = 0;
+  for (std::size_t k = 4; k < mean.rows.size(); ++k) {  // bins nearer to 0 hold few pairs or none
+    const double away = (mean.rows[k].share - 1) / mean.error[k];
+    squares += away * away;
+    ++counted;
+    if (mean.rows[k].from >= 1) CHECK(std::abs(mean.rows[k].share - 1) < 0.2);  // 650 pairs or more: 4 % by chance
+  }
+  // Each is Student's t of 7 degrees of freedom squared: mean 7/5, variance 2.2^2, so 0.37 for the mean of 36.
+  CHECK(squares / counted == Approx(1.4).margin(1.1));
+  CHECK(mean_pairs(Vec3(5, 4, 6), bins, std::span(states).first(1)).error.empty());
+}
+
+TEST_CASE("the pair distribution of a cubic lattice has its peaks at 1, root 2, root 3, ... spacings and no error") {
+  std::vector<Vec3> centres;
+  for (int k = 0; k < 216; ++k) centres.emplace_back(k % 6, k / 6 % 6, k / 36);
+  const std::vector<CentresInCell> states(3, {centres, Vec3(6, 6, 6).asDiagonal()});
+  constexpr int bins = 60;
+  const MeanPairs mean = mean_pairs(Vec3(6, 6, 6), bins, states);
+  // Neighbours of a point at the square of a distance: the ways to write it as a sum of three squares.
+  const std::vector<int> ways{0, 6, 12, 8, 6, 24, 24, 0, 12};
+  std::vector<double> expected(bins, 0);
+  for (std::size_t square = 1; square < ways.size(); ++square)
+    expected[std::size_t(std::sqrt(double(square)) / 3 * bins + 1e-9)] += ways[square];
+  for (std::size_t k = 0; k < mean.rows.size(); ++k) {
+    const auto& row = mean.rows[k];
+    const double shell = 4 * test::pi / 3 * (std::pow(row.to, 3) - std::pow(row.from, 3));
+    CHECK(row.share == Approx(expected[k] * 216 / 215 / shell).margin(1e-12));  // of 215 others in 216
+    CHECK(mean.error[k] < 1e-9);
+  }
+}
+
 TEST_CASE("placements fill the cell and keep their distance from images, too") {
   for (const auto& [kind, orientation] : {std::pair("box", "random"), {"lattice", "as-given"}}) {
     VesicleParameters v = test::vesicle("prolate", 0.9, 6);
@@ -342,6 +387,83 @@ TEST_CASE("placements fill the cell and keep their distance from images, too") {
     CHECK(!gap.crossing);
     CHECK(gap.distance >= default_placement_gap * (1 - 1e-6));
   }
+}
+
+TEST_CASE(
+    "vesicles are placed at random at a volume fraction of 0.45, apart, turned every way, the same from one seed") {
+  for (const auto& [nu, orientation] :
+       {std::pair(0.95, "random"), {0.9, "random"}, {0.9, "as-given"}, {1.0, "random"}}) {
+    INFO(nu << ", " << orientation);
+    VesicleParameters v = test::vesicle(nu < 1 ? "prolate" : "sphere", nu, 6);
+    PlacementParameters p;
+    p.kind = "box";
+    p.orientation = orientation;
+    p.count = 32;
+    const double side = std::cbrt(p.count * 4 * test::pi / 3 * nu / 0.45);
+    Scene s = scene_of({v}, {side, side, side}, {shear(1)});
+    s.placements = {p};
+    const Scene full = placed(s), again = placed(s);
+    REQUIRE(int(full.vesicles.size()) == p.count);
+    Plans plans;
+    std::vector<Coefficients> x;
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+    for (std::size_t k = 0; k < full.vesicles.size(); ++k) {
+      const VesicleParameters& one = full.vesicles[k];
+      x.push_back(initial_position(one));
+      CHECK((one.center.cwiseAbs().array() <= side / 2).all());
+      CHECK(one.center == again.vesicles[k].center);
+      if (!one.axis) continue;
+      CHECK(*one.axis == *again.vesicles[k].axis);
+      axes += *one.axis * one.axis->transpose() / p.count;
+    }
+    const Gap gap = smallest_gap(plans, x, cell_at(s, 0));
+    CHECK(!gap.crossing);
+    CHECK(gap.distance >= default_placement_gap * (1 - 1e-6));
+    // The tensor of random directions: 1/3 of the unit tensor, entries spread by sqrt(4/45/32) = 0.05.
+    if (orientation == std::string("random"))
+      CHECK((axes - Eigen::Matrix3d::Identity() / 3).cwiseAbs().maxCoeff() < 0.21);
+  }
+}
+
+TEST_CASE("pairs of densely placed vesicles lie in all directions alike") {
+  VesicleParameters v = test::vesicle("prolate", 0.95, 4);
+  PlacementParameters p;
+  p.kind = "box";
+  p.orientation = "random";
+  p.count = 120;
+  const double side = std::cbrt(p.count * 4 * test::pi / 3 * 0.95 / 0.45);
+  Scene s = scene_of({v}, {side, side, side}, {shear(1)});
+  s.placements = {p};
+  const Scene full = placed(s);
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
+  int pairs = 0;
+  for (std::size_t i = 0; i < full.vesicles.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      Vec3 away = full.vesicles[i].center - full.vesicles[j].center;
+      away -= side * Vec3((away / side).array().round());
+      if (away.norm() > 2.6) continue;  // neighbours
+      ++pairs;
+      directions += away.normalized() * away.normalized().transpose();
+    }
+  REQUIRE(pairs > 300);
+  // Entries of directions at random are spread by sqrt(4/45/pairs) < 0.017.
+  CHECK((directions / pairs - Eigen::Matrix3d::Identity() / 3).cwiseAbs().maxCoeff() < 0.085);
+}
+
+TEST_CASE("what cannot be moved apart is refused with what is missing, and a search for places can be stopped") {
+  VesicleParameters v = test::vesicle("sphere", 1, 4);
+  PlacementParameters p;
+  p.kind = "box";
+  p.count = 8;
+  p.gap = 0.0;
+  const double side = std::cbrt(p.count * 4 * test::pi / 3 / 0.69);  // beyond random close packing, 0.64
+  Scene s = scene_of({v}, {side, side, side}, {shear(1)});
+  s.placements = {p};
+  CHECK_THROWS_WITH(placed(s),
+                    Catch::Contains("8 vesicles could not be placed at random at a volume fraction of 0.69"));
+  int asked = 0;
+  CHECK_THROWS_AS(placed(s, [&] { return ++asked > 3; }), std::system_error);
+  CHECK(asked == 4);
 }
 
 TEST_CASE("streams carry a vesicle the same way on each of their axes, back on every other one, and copies together") {

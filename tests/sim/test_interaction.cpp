@@ -402,11 +402,14 @@ TEST_CASE(
     "a volume fraction that cannot be placed is refused, at once where it is hopeless, else with how many could") {
   Scene scene = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
   PlacementParameters p;
-  p.kind = "box";
+  p.kind = "tube";
   p.count = 60;
-  p.volume_fraction = 0.7;
+  p.volume_fraction = 0.45;
   scene.placements = {p};
   CHECK_THROWS_WITH(placed(scene), Catch::Contains("of 60 vesicles could be placed"));
+  scene.placements[0].kind = "box";
+  scene.placements[0].volume_fraction = 0.74;
+  scene.placements[0].gap = 0.2;
   scene.placements[0].count = 5000;
   int asked = 0;
   CHECK_THROWS_WITH(placed(scene, [&] { return ++asked > 0; }), Catch::Contains("cannot be placed at random"));
