@@ -39,8 +39,8 @@ struct Outlook {
   std::optional<double> error;
 };
 
-Outlook outlook(const VesicleDynamics& v, std::span<const Level> levels, const Frame& frame, int order, Extrapolation extrapolation,
-                bool euler_predicts) {
+Outlook outlook(const VesicleDynamics& v, std::span<const Level> levels, const Frame& frame, int order,
+                Extrapolation extrapolation, bool euler_predicts) {
   const std::vector<double> times = times_of(levels);
   const auto weights = [&](int points) {
     return lagrange(std::span(times).first(std::min<std::size_t>(points, times.size())), 0);
