@@ -28,14 +28,26 @@ inline std::optional<double> save_interval(const TimeParameters& time) {
 }
 /// Relative residual of a linear solve: a hundredth of what a step may err leaves no trace, a tenth hardly one. The
 /// volume of a vesicle with little viscosity inside answers to a residual by one over its contrast.
+inline double solve_tolerance(const Scene& scene, double share, double step_error) {
+  double tolerance = share * step_error;
+  for (const VesicleParameters& v : scene.vesicles)
+    tolerance = std::min(tolerance, share * step_error * v.viscosity_contrast);
+  return tolerance;
+}
+/// Where steps are fixed and it is not given: of a step of which nothing is known.
+inline constexpr double tightest_fixed_solve = 1e-10;
 inline double solve_tolerance(const Scene& scene) {
   if (scene.numerics.gmres_tolerance) return *scene.numerics.gmres_tolerance;
-  if (!steps_adapt(scene.time)) return 1e-10;
-  double tolerance = 0.1 * tolerance_of(scene.time);
-  for (const VesicleParameters& v : scene.vesicles)
-    tolerance = std::min(tolerance, 0.1 * tolerance_of(scene.time) * v.viscosity_contrast);
+  if (!steps_adapt(scene.time)) return tightest_fixed_solve;
   constexpr double least = 1e-11;
-  return std::max(tolerance, least);
+  return std::max(solve_tolerance(scene, 0.1, tolerance_of(scene.time)), least);
+}
+/// Of a step whose error is expected to be so large, as time.tolerance counts it. Fixed steps are taken where errors
+/// are to be smooth in the step: a thousandth cannot be seen in them.
+inline double solve_tolerance(const Scene& scene, double step_error) {
+  if (scene.numerics.gmres_tolerance || steps_adapt(scene.time)) return solve_tolerance(scene);
+  constexpr double share = 1e-3, loosest = 1e-6;
+  return std::clamp(solve_tolerance(scene, share, step_error), tightest_fixed_solve, loosest);
 }
 
 }  // namespace sim

@@ -255,7 +255,7 @@ struct NumericsParameters {
   int least_order = 6, most_order = 24;  ///< of vesicles whose order is automatic
   int upsampling = 0;                    ///< q / p of differentiation; 0: Algorithm 1 chooses per vesicle
   double aliasing_tolerance = 1e-4;
-  std::optional<double> gmres_tolerance;  ///< not given: a tenth of the time tolerance, 1e-10 for fixed steps
+  std::optional<double> gmres_tolerance;  ///< not given: see sim/core/derived.h
   int source_order = 0;                   ///< degree of the rotated source grids; 0: p + 1
   int label_order = 0;                    ///< degree of the material labels; 0: max(2p, 24)
   bool implicit_tension = true;
@@ -317,7 +317,9 @@ void visit(P& p, V&& v) {
               .minimum = 0,
               .maximum = 1e-2,
               .exclusive_minimum = true,
-              .when_absent = "a tenth of time.tolerance, 1e-10 with fixed steps"},
+              .when_absent =
+                  "a tenth of time.tolerance; with fixed steps a thousandth of the expected error of a step, "
+                  "from 1e-10 to 1e-6, and 1e-10 where none is expected yet"},
     p.gmres_tolerance);
   v(Parameter{.name = "source_order",
               .unit = "",

@@ -5,6 +5,7 @@
 #include "sim/stepping/multistep.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace sim {
 
@@ -33,10 +34,13 @@ struct Outlook {
   Coefficients at;      ///< x*
   Coefficients sliding;
   Motion motion;  ///< velocity of the frame included
+  /// Estimated local error of the position from the past alone, by size_of(): c/(k + 1) times the k-th difference of
+  /// the velocities. None: there are too few levels.
+  std::optional<double> error;
 };
 
-Outlook outlook(std::span<const Level> levels, const Frame& frame, int order, Extrapolation extrapolation,
-                bool euler_predicts) {
+Outlook outlook(const VesicleDynamics& v, std::span<const Level> levels, const Frame& frame, int order,
+                Extrapolation extrapolation, bool euler_predicts) {
   const std::vector<double> times = times_of(levels);
   const auto weights = [&](int points) {
     return lagrange(std::span(times).first(std::min<std::size_t>(points, times.size())), 0);
@@ -44,7 +48,8 @@ Outlook outlook(std::span<const Level> levels, const Frame& frame, int order, Ex
   const int points = order + (extrapolation == Extrapolation::one_more ? 1 : 0);
   constexpr int most_guessed = 4;  // a cubic: of higher ones the noise of the solves grows
   Outlook o;
-  o.behind = combined(levels, bdf(times, order).behind, &Level::position);
+  const Bdf formula = bdf(times, order);
+  o.behind = combined(levels, formula.behind, &Level::position);
   o.at = combined(levels, weights(points), &Level::position);
   if (levels.size() == 1 && euler_predicts)
     o.at.values -= times[0] * (levels[0].velocity.values + levels[0].sliding.values);
@@ -52,6 +57,12 @@ Outlook outlook(std::span<const Level> levels, const Frame& frame, int order, Ex
   o.motion.velocity = combined(levels, weights(std::min(order + 1, most_guessed)), &Level::velocity);
   o.motion.velocity.values += frame_velocity(rigid_body(o.at), frame).values;
   o.motion.tension = combined(levels, weights(std::min(order + 1, most_guessed)), &Level::tension);
+  if (int(levels.size()) > order) {
+    std::vector<double> difference = weights(order + 1);
+    const std::vector<double> of_order = weights(order);
+    for (std::size_t j = 0; j < of_order.size(); ++j) difference[j] -= of_order[j];
+    o.error = formula.c / (order + 1) * size_of(v, combined(levels, difference, &Level::velocity).values);
+  }
   return o;
 }
 
@@ -122,15 +133,19 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
     const std::vector<Level> levels = carried_levels(v, v.frame, 0, problem.dt);
     // The instantaneous velocity of a sphere strains it: no prediction.
     const bool euler_predicts = extrapolation == Extrapolation::one_more && !is_sphere({v.area, v.volume});
-    const Outlook& o = expected[k] = outlook(levels, moving[k], order, extrapolation, euler_predicts);
+    const Outlook& o = expected[k] = outlook(v, levels, moving[k], order, extrapolation, euler_predicts);
     at[k] = o.at;
     behind[k] = {o.at.order, o.behind.values - o.at.values + c * o.sliding.values};
     guess[k] = o.motion;
   });
 
+  double error = 0;  // of the step, as that of its record: the largest
+  for (const Outlook& o : expected) error = std::max(error, o.error.value_or(0));
+  const double tolerance = solve_tolerance(s.scene, error / motion_over(d, problem.dt));
+
   const Suspension suspension = freeze(s, d, time, at, guess);
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity, behind);
-  Attempt<SuspensionSolve> result = solve(s, suspension, c, r, guess, moving);
+  Attempt<SuspensionSolve> result = solve(s, suspension, c, r, guess, moving, tolerance);
   if (!result) return result.rejection();
 
   Advance a{std::vector<Moved>(n), result->iterations, result->residual, suspension.division};

@@ -29,8 +29,8 @@ double fastest_growth(bool first, int order) {
 
 double allowed_error(const Model& s, const Dynamics& before, double dt) {
   // What a step leaves may grow before it dies out: by 1.5 while a vesicle turns over.
-  constexpr double caution = 0.5, share_a_step = 0.01;
-  return caution * tolerance_of(s.scene.time) * (dt * fastest_motion(before) + share_a_step);
+  constexpr double caution = 0.5;
+  return caution * tolerance_of(s.scene.time) * motion_over(before, dt);
 }
 
 double length_towards(double time, double target, double wanted) {

@@ -27,7 +27,7 @@ Attempt<Advance> globally_implicit(const StepProblem& problem) {
   const auto x = positions(d);
   const Suspension suspension = freeze(s, d, d.time, x, motions(d));
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity);
-  Attempt<SuspensionSolve> result = solve(s, suspension, dt, r, motions(d), frames(d));
+  Attempt<SuspensionSolve> result = solve(s, suspension, dt, r, motions(d), frames(d), solve_tolerance(s.scene));
   if (!result) return result.rejection();
   Advance a{std::vector<Moved>(x.size()), result->iterations, result->residual, suspension.division};
   for (std::size_t k = 0; k < x.size(); ++k) {

@@ -89,13 +89,6 @@ double first_adaptive_step(const Model& s, const Dynamics& d) {
 
 }  // namespace
 
-double fastest_motion(const Dynamics& d) {
-  double rate = 0;
-  for (const VesicleDynamics& v : d.vesicles)
-    rate = std::max(rate, motion_rate(v.motion.velocity, area_radius({v.area, v.volume})));
-  return rate;
-}
-
 bool any_sphere(const Dynamics& d) {
   const std::vector<AreaVolume> all = sizes(d);
   return std::any_of(all.begin(), all.end(), is_sphere);

@@ -29,8 +29,6 @@ double longest_step(const Scene&);
 /// No step that follows a tolerance is longer: a tenth of the period of a flow that oscillates, half of the time in
 /// which flows strain a sphere, whose tension would take too many iterations; infinite otherwise.
 double longest_adaptive_step(const Model&, const Dynamics&);
-/// Rate at which the membrane of a vesicle moves relative to its centre, largest of all.
-double fastest_motion(const Dynamics&);
 bool any_sphere(const Dynamics&);
 
 /// How the first step of a history is taken, from the motions of the present.

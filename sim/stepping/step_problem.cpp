@@ -1,6 +1,7 @@
 #include "sim/stepping/step_problem.h"
 
 #include "sim/membrane/cell.h"
+#include "sim/membrane/sliding.h"
 
 #include <fmt/format.h>
 
@@ -73,13 +74,12 @@ Suspension freeze(const Model& s, const Dynamics& d, double time, std::span<cons
 }
 
 Attempt<SuspensionSolve> solve(const Model& s, const Suspension& suspension, double c, std::span<const Coefficients> r,
-                               std::span<const Motion> guess, std::span<const Frame> frames) {
+                               std::span<const Motion> guess, std::span<const Frame> frames, double tolerance) {
   const Preconditioner kind =
       s.scene.numerics.preconditioner == "block" ? Preconditioner::block : Preconditioner::spectral;
   std::vector<RigidMotion> rigid;
   for (std::size_t k = 0; k < frames.size(); ++k)
     rigid.push_back(suspension.membranes[k] ? frames[k].at(suspension.membranes[k]->body.centre) : RigidMotion{});
-  double tolerance = solve_tolerance(s.scene);
   constexpr double stiff_sphere = 1e-9;  // the tension that keeps a sphere round hides smaller residuals
   bool pinned = false;
   for (const auto& m : suspension.membranes) pinned = pinned || (m && m->pinned);
@@ -88,6 +88,18 @@ Attempt<SuspensionSolve> solve(const Model& s, const Suspension& suspension, dou
   SuspensionSolve result = solve_suspension(suspension, c, r, guess, tolerance, kind, rigid);
   if (!result.converged) return not_converged(result.residual, result.iterations);
   return result;
+}
+
+double fastest_motion(const Dynamics& d) {
+  double rate = 0;
+  for (const VesicleDynamics& v : d.vesicles)
+    rate = std::max(rate, motion_rate(v.motion.velocity, area_radius({v.area, v.volume})));
+  return rate;
+}
+
+double motion_over(const Dynamics& d, double dt) {
+  constexpr double share_a_step = 0.01;
+  return dt * fastest_motion(d) + share_a_step;
 }
 
 std::vector<AreaVolume> sizes(const Dynamics& d) {

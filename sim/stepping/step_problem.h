@@ -59,9 +59,9 @@ double gap_floor(const Model&, const Dynamics&);
 Suspension freeze(const Model&, const Dynamics&, double time, std::span<const Coefficients> positions,
                   std::span<const Motion> expected);
 
-/// Solves for the motions at frozen positions, relative to those of the frames.
+/// Solves for the motions at frozen positions, relative to those of the frames, to a relative residual.
 Attempt<SuspensionSolve> solve(const Model&, const Suspension&, double c, std::span<const Coefficients> forcing,
-                               std::span<const Motion> guess, std::span<const Frame> frames);
+                               std::span<const Motion> guess, std::span<const Frame> frames, double tolerance);
 
 /// Velocity of a frame at the points of a body.
 Coefficients frame_velocity(const RigidBody&, const Frame&);
@@ -69,6 +69,12 @@ Coefficients frame_velocity(const RigidBody&, const Frame&);
 Frame frame_of(const Membrane&, const Coefficients& velocity, std::span<const FlowParameters>, double time);
 /// Root of the mean square over the parameter sphere, in area radii of the vesicle.
 double size_of(const VesicleDynamics&, const Matrix& difference);
+
+/// Rate at which the membrane of a vesicle moves relative to its centre, largest of all.
+double fastest_motion(const Dynamics&);
+/// How far membranes move in a step, in area radii: what an error of position is compared with. A small constant is
+/// added, so that steps need not become short for nothing while all motion dies out.
+double motion_over(const Dynamics&, double dt);
 
 /// Of every vesicle; sizes: A0 and V0.
 std::vector<AreaVolume> sizes(const Dynamics&);

@@ -174,6 +174,42 @@ TEST_CASE("a membrane in fluid at rest keeps its area, and the power of its bend
   CHECK(-(energy(h) - energy(-h)) / (2 * h) == Approx(bending).epsilon(1e-5));
 }
 
+TEST_CASE(
+    "solves of fixed steps leave what cannot be seen beside the error of the steps, and obey a residual where given") {
+  Plans plans;
+  constexpr int count = 20;
+  struct Run {
+    Matrix position;
+    double iterations = 0, loosest = 0, errors = 0;
+  };
+  const auto run = [&](std::string scheme, std::optional<double> residual) {
+    Scene scene = test::shear_scene(test::vesicle("prolate", 0.85, 8, 10), 0.1, 3, scheme);
+    scene.numerics.gmres_tolerance = residual;
+    const Model s = make_model(scene, plans);
+    Dynamics d = initial_dynamics(s);
+    Run r;
+    for (int n = 0; n < count; ++n) {
+      const Step step = take_step(s, d, 0.1).value();
+      d = step.dynamics;
+      r.iterations += step.record.iterations;
+      r.loosest = std::max(r.loosest, step.record.residual);
+      r.errors += step.record.error;
+    }
+    r.position = d.vesicles[0].position.values;
+    return r;
+  };
+  for (const char* scheme : {"bdf2", "bdf3"}) {
+    const Run exact = run(scheme, 1e-13), usual = run(scheme, std::nullopt), tight = run(scheme, 1e-10);
+    const double radius = std::sqrt(4 * std::numbers::pi);  // of the norm: a root mean square over the sphere
+    // A thousandth each step, and as much again for what grows from one to the next.
+    CHECK((usual.position - exact.position).norm() / radius < 2e-3 * usual.errors);
+    CHECK(usual.iterations < 0.85 * tight.iterations);
+    CHECK(usual.loosest <= 1e-6);
+    CHECK(usual.loosest > 1e-9);
+    CHECK(tight.loosest <= 1e-10);
+  }
+}
+
 TEST_CASE("the velocity agrees with an independent path: the change of shape over a short step") {
   Plans plans;
   Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 8, 2), 1e-3, 1);
