@@ -2,7 +2,6 @@
 
 #include "sim/measures/diagnostics.h"
 #include "sim/membrane/cell.h"
-#include "sim/membrane/sliding.h"
 #include "sim/sphere/norms.h"
 #include "sim/surface/dealias.h"
 #include "sim/surface/shapes.h"
