@@ -143,7 +143,8 @@ Report reproduce_two_vesicles(const Effort& effort) {
       "Two prolates, ν = 0.85, area 4π, long axes along x, centres ∓(1.2, 0, −0.5) (the paper's are only pictured), in "
       "the "
       "shear flow u = γ̇ z e_x; λ = 10, κ_b = 0.01, p = 8, bdf2, γ̇Δt = 0.21, 330 steps, area and volume correction on.",
-      "The membranes start 0.005 R_0 apart, which degree 8 does not resolve; the near-singular rule serves all close pairs, and a "
+      "The membranes start 0.005 R_0 apart, which degree 8 does not resolve; the near-singular rule serves all close "
+      "pairs, and a "
       "repulsion of 100 μγ̇ exp(−h / 0.02 R_0) a membrane area keeps them apart."};
 
   sim::Plans plans;
