@@ -165,7 +165,7 @@ std::vector<render::Plot> pair_plots(const std::vector<FigureSource>& sources, c
   constexpr int fewest = 10, most = 400;
   render::Plot plot;
   plot.x = {.label = "r / R_{0}", .grid = true};
-  plot.y = {.label = "g(r)", .grid = true};
+  plot.y = {.label = "pair distribution g", .grid = true};
   double reach = 0;
   for (const FigureSource& source : sources) {
     const sim::Scene& scene = source.settings.scene;
