@@ -257,8 +257,6 @@ struct Reader {
     if (n.least_order > n.most_order)
       fail_at(source_of(*table, n.least_order != sim::NumericsParameters{}.least_order ? "least_order" : "most_order"),
               fmt::format("'least_order' {} is above 'most_order' {}", n.least_order, n.most_order));
-    if (n.repulsion_strength > 0 && !n.near_rule)
-      fail_at(source_of(*table, "near_rule"), "the repulsion acts where the near rule does: it needs near_rule = true");
   }
 
   /// Every result has a name of its own.

@@ -25,6 +25,32 @@ bending_modulus = 1.0
 gmres_tolerance = 1e-10
 )";
 
+constexpr char crowd_scene[] = R"([flow]
+kind = "shear"
+rate = 1.0
+
+[time]
+end = 6.0
+save_every = 0.25
+
+[cell]
+size = [6.0, 6.0, 6.0]
+
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.9
+axis = [1, 0, 0]
+bending_modulus = 0.1
+
+[[placement]]
+kind = "box"
+count = 16
+
+[numerics]
+repulsion_strength = 60.0
+repulsion_range = 0.05
+)";
+
 }  // namespace
 
 const std::vector<BaseScene>& base_scenes() {
@@ -35,7 +61,8 @@ const std::vector<BaseScene>& base_scenes() {
                                              {"encounter", 8, encounter_scene},
                                              {"parachute", 8, parachute_scene},
                                              {"slipper", 8, slipper_scene},
-                                             {"waves", 12, waves_scene, false}};
+                                             {"waves", 12, waves_scene, false},
+                                             {"crowd", 8, crowd_scene, false}};
   return scenes;
 }
 

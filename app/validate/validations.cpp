@@ -15,6 +15,8 @@ const std::vector<ValidationRow>& validations() {
       {"tumbling", "time of half a turn in shear", 30, validate_tumbling},
       {"quasi-spherical", "steady angle in the limit of small excess area", 60, validate_quasi_spherical},
       {"rheology", "intrinsic viscosity and normal stresses in the limit of small excess area", 60, validate_rheology},
+      {"suspensions", "viscosity of suspensions in sheared cells, from dilute to a volume fraction of 0.4", 3000,
+       validate_crowds},
       {"border", "where treading ends and tumbling begins, over reduced volume and viscosity contrast", 500,
        validate_border},
       {"literature", "steady angles beside published ones", 60, validate_literature},

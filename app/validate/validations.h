@@ -20,6 +20,7 @@ Section validate_treading_frequency(Trials&);
 Section validate_tumbling(Trials&);
 Section validate_quasi_spherical(Trials&);
 Section validate_rheology(Trials&);
+Section validate_crowds(Trials&);
 Section validate_border(Trials&);
 Section validate_literature(Trials&);
 Section validate_poiseuille(Trials&);

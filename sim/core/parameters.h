@@ -377,13 +377,13 @@ void visit(P& p, V&& v) {
     p.near_longitudes);
   v(Parameter{.name = "repulsion_strength",
               .unit = "force/area",
-              .meaning =
-                  "traction strength exp(-gap/range) that pushes membranes apart where the near rule acts; 0: none",
+              .meaning = "traction strength exp(-gap/range) that pushes membranes apart (not parts of one); what "
+                         "is enough: docs/stepping.md; 0: none",
               .minimum = 0},
     p.repulsion_strength);
   v(Parameter{.name = "repulsion_range",
               .unit = "length",
-              .meaning = "range of the repulsion",
+              .meaning = "range of the repulsion, at least 0.001 R0",
               .minimum = 0,
               .exclusive_minimum = true,
               .when_absent = "0.05 R0 of the smallest vesicle"},

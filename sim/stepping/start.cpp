@@ -33,12 +33,11 @@ double longest_step(const Scene& scene) {
   return longest;
 }
 
-namespace {
-
-/// Largest rate of strain of any vesicle by any cause.
 double strain(const Model& s, const Dynamics& d) {
   return straining_rate(s.plans, s.scene.flows, s.scene.buoyancy.gravity, s.materials, positions(d), sizes(d));
 }
+
+namespace {
 
 /// x := c + R (x - c)/|x - c|, the sphere of the given volume.
 void make_round(Coefficients& x, double volume) {
@@ -50,6 +49,23 @@ void make_round(Coefficients& x, double volume) {
   const Coefficients round = basis.analyze(Matrix(radius * arms));
   x = round;
   x.values.row(0) += std::sqrt(unit_sphere_area) * centre.transpose();
+}
+
+/// Throws std::invalid_argument where the range is too short to be sampled.
+void check_repulsion(const Model& s, const Dynamics& d) {
+  const NumericsParameters& n = s.scene.numerics;
+  if (n.repulsion_strength == 0) return;
+  double largest = 0;
+  for (const AreaVolume& size : sizes(d)) largest = std::max(largest, area_radius(size));
+  const double smallest = smallest_radius(sizes(d)), least = least_repulsion_range(smallest, largest);
+  if (const double range = repulsion_range(n, smallest); range < least)
+    throw std::invalid_argument(
+        fmt::format("numerics.repulsion_range = {:.3g} is too short to be sampled on vesicles of radius {}: it must be "
+                    "at least {:.3g}",
+                    range,
+                    largest > smallest * (1 + 1e-9) ? fmt::format("{:.3g} to {:.3g}", smallest, largest)
+                                                    : fmt::format("{:.3g}", largest),
+                    least));
 }
 
 /// What a vesicle starts with that no step has moved yet, or that other flows take from now on: the frame of the flow.
@@ -184,6 +200,7 @@ Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
   if (gap.distance < gap_floor(s, d))
     throw std::invalid_argument(fmt::format("{} are {:.3g} apart, less than numerics.gap_floor = {:.3g}",
                                             pair_name(gap), gap.distance, gap_floor(s, d)));
+  check_repulsion(s, d);
   start_steps(s, d);
   if (std::isfinite(gap.distance)) d.control.gap = gap.distance;
   if (scheme_name(s.scene) == "explicit")

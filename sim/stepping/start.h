@@ -31,6 +31,9 @@ double longest_step(const Scene&);
 double longest_adaptive_step(const Model&, const Dynamics&);
 bool any_sphere(const Dynamics&);
 
+/// Largest rate at which any vesicle is strained by any cause.
+double strain(const Model&, const Dynamics&);
+
 /// How the first step of a history is taken, from the motions of the present.
 void start_steps(const Model&, Dynamics&);
 

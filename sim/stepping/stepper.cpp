@@ -182,6 +182,16 @@ std::optional<Rejection> finish_vesicles(const Model& s, Step& step, Advance& ad
   return std::nullopt;
 }
 
+/// What may keep membranes apart that have come together.
+std::string remedy(const Model& s, const Dynamics& d) {
+  const NumericsParameters& n = s.scene.numerics;
+  const double radius = smallest_radius(sizes(d)), range = repulsion_range(n, radius);
+  const double enough = std::max(sufficient_repulsion(strain(s, d), radius, range), 2 * n.repulsion_strength);
+  const double digit = std::pow(10, std::floor(std::log10(enough)) - 1);
+  return fmt::format("try more degrees, or numerics.repulsion_strength = {:g}{}", std::ceil(enough / digit) * digit,
+                     n.repulsion_range ? "" : fmt::format(" (its range is {:.2g})", range));
+}
+
 /// Of a step that leads two vesicles into each other. Where they were all but there before, shorter steps only take
 /// longer: the film between them is thinner than their degrees resolve.
 Rejection too_close(const Model& s, const Dynamics& before, const Gap& gap) {
@@ -189,11 +199,9 @@ Rejection too_close(const Model& s, const Dynamics& before, const Gap& gap) {
   const double floor = gap_floor(s, before), last = before.control.gap;
   constexpr double all_but_there = 1.5;
   if (last > 0 && last < all_but_there * floor)
-    return {
-        fmt::format("{} come within numerics.gap_floor = {:.3g}, nearer than order {} keeps membranes apart; try more "
-                    "degrees, or numerics.repulsion_strength",
-                    pair, floor, before.vesicles[gap.first].position.order),
-        true};
+    return {fmt::format("{} come within numerics.gap_floor = {:.3g}, nearer than order {} keeps membranes apart; {}",
+                        pair, floor, before.vesicles[gap.first].position.order, remedy(s, before)),
+            true};
   if (gap.crossing) return {pair + " would cross"};
   return {fmt::format("{} would come within {:.2g}", pair, gap.distance)};
 }

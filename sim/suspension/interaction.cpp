@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 
@@ -32,8 +33,8 @@ std::vector<PairPlan> candidates(const Interaction& w, const InteractionOptions&
   std::vector<PairPlan> pairs;
   for (const ImagePair& p : near_images(boxes, reach, options.far.cell)) {
     const Vec3 shift = p.shift(options.far.cell);
-    pairs.push_back({p.first, p.second, p.image, shift, {}, {}, {}, {}});
-    pairs.push_back({p.second, p.first, -p.image, -shift, {}, {}, {}, {}});
+    pairs.push_back({p.first, p.second, p.image, shift, {}, {}, {}});
+    pairs.push_back({p.second, p.first, -p.image, -shift, {}, {}, {}});
   }
   const auto key = [](const PairPlan& p) { return std::tuple(p.target, p.source, p.image[0], p.image[1], p.image[2]); };
   std::sort(pairs.begin(), pairs.end(), [&](const PairPlan& a, const PairPlan& b) { return key(a) < key(b); });
@@ -48,14 +49,21 @@ NearOrder near_order(const InteractionOptions& options, int degree) {
   return order;
 }
 
+/// A vesicle as near points and rows ask of it.
+struct NearSource {
+  const Coefficients& position;
+  PointSampler surface;
+  const RotationPlan& rotation;
+  const NearRule& rule;
+};
+
 /// Sorts the targets of a pair: those that need the fine grid, and those that need rows.
-void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> positions, const RotationPlan& rotation,
-          const InteractionOptions& options, bool only_near) {
+void fill(PairPlan& pair, const Interaction& w, const NearSource& source_surface, const InteractionOptions& options,
+          bool only_near) {
   const int j = pair.source;
   const Sources& s = w.sources[j];
   const Matrix& targets = w.far.groups[pair.target].points;
-  const PointSampler surface(positions[j]);
-  const NearRule rule = near_rule(rotation.order(), near_order(options, positions[j].order));
+  const auto& [position, surface, rotation, rule] = source_surface;
   const double reach = options.near_spacings * s.spacing.maxCoeff();
   const double coarse_reach = options.coarse_spacings * (*w.far.sources)[j].spacing.maxCoeff();
   for (int k = 0; k < int(targets.rows()); ++k) {
@@ -65,15 +73,13 @@ void fill(PairPlan& pair, const Interaction& w, std::span<const Coefficients> po
     if (options.near_rule && to_box < reach) {
       const auto [source, away] = nearest_source(s, x);
       if (away < (options.near_spacings + 1) * s.spacing[source]) {
-        NearestPoint nearest = nearest_point(surface, x, grid_direction(*w.source_basis[j], source));
+        const NearestPoint nearest = nearest_point(surface, x, grid_direction(*w.source_basis[j], source));
         if (nearest.inside)
           throw std::domain_error(pair.target == j ? fmt::format("vesicle {} crosses its own image", j)
                                                    : fmt::format("vesicle {} crosses vesicle {}", pair.target, j));
         if (nearest.distance < options.near_spacings * s.spacing[source]) {
           pair.near.push_back(k);
-          pair.rows.push_back(near_row(rule, rotation, positions[j], x, nearest, w.dual[j]));
-          nearest.position += pair.shift;
-          pair.nearest.push_back(nearest);
+          pair.rows.push_back(near_row(rule, rotation, position, x, nearest, w.dual[j]));
           continue;
         }
       }
@@ -141,12 +147,10 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
   w.division = options.division;
   const int n = int(positions.size());
   if (n == 0 || (n < 2 && !options.far.cell)) return w;
-  std::vector<const RotationPlan*> rotations;
   for (int i = 0; i < n; ++i) {
     const int p = positions[i].order;
     w.source_basis.push_back(&plans.basis(p, smooth_order(p, options.source_order)));
     w.target_basis.push_back(&plans.basis(p, p + 1));
-    rotations.push_back(&plans.rotation(p));
     w.dual.push_back(materials[i].viscosity_contrast != 1);
   }
   w.sources.resize(n);
@@ -167,8 +171,15 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
   Division of_pairs{w.division.ranks, {}};
   if (!w.division.whole())
     for (const PairPlan& pair : w.pairs) of_pairs.owner.push_back(w.division.owner[pair.target]);
+  std::map<int, NearRule> rules;  // by degree
+  for (const Coefficients& x : positions)
+    if (!rules.contains(x.order)) rules.emplace(x.order, near_rule(x.order, near_order(options, x.order)));
+  std::vector<NearSource> near;
+  for (int i = 0; i < n; ++i)
+    near.push_back(
+        {positions[i], PointSampler(positions[i]), plans.rotation(positions[i].order), rules.at(positions[i].order)});
   divided_for(of_pairs, int(w.pairs.size()),
-              [&](int k) { fill(w.pairs[k], w, positions, *rotations[w.pairs[k].source], options, only_near); });
+              [&](int k) { fill(w.pairs[k], w, near[w.pairs[k].source], options, only_near); });
   std::erase_if(w.pairs, [](const PairPlan& pair) { return pair.fine.empty() && pair.near.empty(); });
   const std::vector<Exclusion> excluded = exclusions(w.pairs);
   if (fast)
@@ -242,24 +253,6 @@ std::vector<Coefficients> induced_velocity(const Interaction& w, std::span<const
     }
     result[i] = w.target_basis[i]->analyze(velocity[i]);
   });
-  return result;
-}
-
-std::vector<Coefficients> repulsion(const Interaction& w, double strength, double range) {
-  const std::size_t n = w.far.groups.size();
-  std::vector<Matrix> force;
-  for (const TargetGroup& group : w.far.groups) force.push_back(Matrix::Zero(group.points.rows(), 3));
-  for (const PairPlan& pair : w.pairs)
-    for (std::size_t k = 0; k < pair.near.size(); ++k) {
-      const NearestPoint& nearest = pair.nearest[k];
-      const int row = pair.near[k];
-      force[pair.target].row(row) +=
-          strength * std::exp(-nearest.distance / range) *
-          (w.far.groups[pair.target].points.row(row) - nearest.position.transpose()).normalized();
-    }
-  std::vector<Coefficients> result;
-  for (std::size_t i = 0; i < n; ++i)
-    result.push_back(w.division.mine(int(i)) ? w.target_basis[i]->analyze(force[i]) : Coefficients{});
   return result;
 }
 

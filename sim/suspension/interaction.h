@@ -26,15 +26,13 @@ struct InteractionOptions {
 };
 
 /// What one vesicle makes at those targets of another that are excluded from the far field: by the smooth rule on its
-/// fine grid (where the far field is summed directly), or by rows, with the nearest point of the image for each of
-/// these.
+/// fine grid (where the far field is summed directly), or by rows.
 struct PairPlan {
   int target = 0, source = 0;
   Eigen::Vector3i image = Eigen::Vector3i::Zero();  ///< of the source, in sides of the cell
   Vec3 shift = Vec3::Zero();                        ///< of that image
   std::vector<int> fine, near;
   std::vector<PointRow> rows;
-  std::vector<NearestPoint> nearest;
 };
 
 /// The far field as a fast sum: vesicles are spread from grids of their own, and fine grids serve within the cut-off.
@@ -64,10 +62,5 @@ Interaction plan_interaction(Plans&, std::span<const Coefficients> positions, st
 /// Velocity that all other vesicles, and in a periodic cell all images, induce on each, projected on its degree;
 /// of this rank's vesicles, from the densities of all.
 std::vector<Coefficients> induced_velocity(const Interaction&, std::span<const Densities>);
-
-/// Optional short-range repulsion: traction strength exp(-gap/range) on the points of each vesicle that are near
-/// another, away from its nearest point. Force densities as coefficients of degree p; zero beyond the range of the
-/// near rule (four spacings of its source grid), and when that rule is off; of this rank's vesicles.
-std::vector<Coefficients> repulsion(const Interaction&, double strength, double range);
 
 }  // namespace sim

@@ -46,10 +46,8 @@ Coefficients moving_force(const Sheet& m, const Motion& motion) {
 std::vector<Load> loads_of(Plans& plans, const Scene& scene, const State& state, bool hold_spheres) {
   const Bodies b = bodies_of(plans, scene, state);
   const auto n = static_cast<int>(b.positions.size());
-  std::vector<Coefficients> repelled;
-  if (b.options.repulsion_strength > 0)
-    repelled = repulsion(plan_interaction(plans, b.positions, b.materials, b.options.interaction),
-                         b.options.repulsion_strength, b.options.repulsion_range);
+  const std::vector<Coefficients> repelled =
+      repulsion_forces(plans, b.positions, b.options.repulsion, b.options.interaction.far.cell);
   std::vector<Load> loads(n);
   parallel_for(n, [&](int i) {
     const VesicleState& v = state.vesicles[i];

@@ -60,6 +60,10 @@ double smallest_radius(std::span<const AreaVolume> sizes) {
   return least;
 }
 
+double repulsion_range(const NumericsParameters& n, double smallest_radius) {
+  return n.repulsion_range.value_or(default_repulsion_range * smallest_radius);
+}
+
 SuspensionOptions suspension_options(const NumericsParameters& n, double smallest_radius, double tolerance,
                                      const CellSides& cell) {
   // Quadrature near vesicles errs by 3e-7.
@@ -70,8 +74,7 @@ SuspensionOptions suspension_options(const NumericsParameters& n, double smalles
   options.interaction.near_rule = n.near_rule;
   options.interaction.near_order = {n.near_latitudes, n.near_longitudes};
   options.interaction.far = {n.far_field, std::clamp(tolerance, finest, coarsest), cell};
-  options.repulsion_strength = n.repulsion_strength;
-  options.repulsion_range = n.repulsion_range.value_or(default_repulsion_range * smallest_radius);
+  options.repulsion = {n.repulsion_strength, repulsion_range(n, smallest_radius)};
   return options;
 }
 
@@ -93,8 +96,8 @@ Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, 
   }
   Suspension s{
       {}, plan_interaction(plans, positions, materials, options.interaction), {}, options.interaction.division};
-  if (!s.interaction.none() && options.repulsion_strength > 0)
-    s.repulsion = repulsion(s.interaction, options.repulsion_strength, options.repulsion_range);
+  s.repulsion =
+      repulsion_forces(plans, positions, options.repulsion, options.interaction.far.cell, options.interaction.division);
   s.membranes = std::move(frozen);
   return s;
 }

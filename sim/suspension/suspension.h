@@ -3,6 +3,7 @@
 
 #include "sim/membrane/block.h"
 #include "sim/suspension/interaction.h"
+#include "sim/suspension/repulsion.h"
 
 namespace sim {
 
@@ -16,7 +17,7 @@ struct Suspension {
 struct SuspensionOptions {
   int source_order = 0;  ///< of the singular rule
   InteractionOptions interaction;
-  double repulsion_strength = 0, repulsion_range = 0.05;  ///< strength 0: none
+  Repulsion repulsion;
 };
 
 /// A vesicle with negligible excess area: its shape is a sphere to 1.2e-3 of its radius, held by a constant tension.
@@ -35,6 +36,8 @@ std::vector<std::optional<PinnedTension>> pinned_tensions(Plans&, std::span<cons
 /// R0 = sqrt(A / 4 pi), and the smallest of several.
 double area_radius(const AreaVolume&);
 double smallest_radius(std::span<const AreaVolume> sizes);
+/// The range asked for, or the default one.
+double repulsion_range(const NumericsParameters&, double smallest_radius);
 
 /// Geometry and operators of all vesicles at x*, each on its rank (options.interaction.division); expected tensions:
 /// see freeze_membrane().

@@ -188,8 +188,6 @@ TEST_CASE("a shape file counts by what it holds, not by where it lies", "[scene]
 TEST_CASE("what two tables say together is checked before the run", "[scene]") {
   CHECK_THAT(error_of(good + "[numerics]\nsource_order = 8\n"),
              Contains("s.toml:16:16") && Contains("order 12, not 8"));
-  CHECK_THAT(error_of(good + "[numerics]\nrepulsion_strength = 1\nnear_rule = false\n"),
-             Contains("s.toml:17:13") && Contains("near_rule = true"));
   CHECK_THAT(error_of(good + "[numerics]\nlabel_order = 1\n"), Contains("s.toml:16:15") && Contains("at least 4"));
   CHECK_THAT(error_of(good + "[placement]\nkind = \"file\"\nfile = \"c.txt\"\nseed = 3\n"),
              Contains("s.toml:18:1") && Contains("not of 'file'"));

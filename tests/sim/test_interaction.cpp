@@ -440,25 +440,6 @@ TEST_CASE("gaps of placements are in radii unless they are given") {
   for (std::size_t k = 0; k < 6; ++k) CHECK((small.vesicles[k].center * 1e6 - large.vesicles[k].center).norm() < 1e-9);
 }
 
-TEST_CASE("repulsion pushes two vesicles apart with opposite forces, and not at all when it is off") {
-  Plans plans;
-  std::vector<Coefficients> x;
-  for (const double side : {-1.0, 1.0}) {
-    VesicleParameters v = test::vesicle("sphere", 1, 8);
-    v.center = {side * 1.02, 0, 0};
-    x.push_back(initial_position(v));
-  }
-  const std::vector<Material> materials(2);
-  const Interaction w = plan_interaction(plans, x, materials, {});
-  const auto force = repulsion(w, 2, 0.1);
-  const Basis basis(8, 20);
-  std::vector<Vec3> net;
-  for (int k = 0; k < 2; ++k) net.push_back(basis.synthesize(force[k]).values.transpose() * geometry(basis, x[k]).dA);
-  CHECK(net[0][0] < -1e-3);
-  CHECK((net[0] + net[1]).norm() < 1e-9);
-  CHECK(repulsion(w, 0, 0.1)[0].values.norm() == 0);
-}
-
 TEST_CASE("a volume of many vesicles gives the same velocities by the coarse and the fine source grid") {
   Plans plans;
   Scene scene = test::shear_scene(test::vesicle("prolate", 0.9, 6, 5), 0.1, 1);
