@@ -277,18 +277,18 @@ FirstDerivatives sample_grid(const Coefficients& c, const Vector& theta, const V
 namespace {
 
 struct BasisFunctions {
-  Matrix value, t, f, tt, tf, ff;  ///< count x (p+1)^2
+  Matrix value, t, f;  ///< count x (p+1)^2; derivatives where asked for
 };
 
-BasisFunctions basis_functions(int p, const Matrix& directions, int derivatives) {
+BasisFunctions basis_functions(int p, const Matrix& directions, bool derivatives) {
   const Eigen::Index count = directions.rows();
   Vector theta(count);
   for (Eigen::Index k = 0; k < count; ++k)
     theta[k] = std::atan2(std::hypot(directions(k, 0), directions(k, 1)), directions(k, 2));
-  const LegendreTable table = legendre_table(p, theta, derivatives);
+  const LegendreTable table = legendre_table(p, theta, derivatives ? 1 : 0);
   BasisFunctions b;
-  Matrix* const all[] = {&b.value, &b.t, &b.f, &b.tt, &b.tf, &b.ff};
-  for (int k = 0; k < (derivatives + 1) * (derivatives + 2) / 2; ++k) all[k]->resize(count, coefficient_count(p));
+  b.value.resize(count, coefficient_count(p));
+  if (derivatives) b.t = b.f = Matrix::Zero(count, coefficient_count(p));
   Eigen::ArrayXd phi(count);
   for (Eigen::Index k = 0; k < count; ++k) phi[k] = std::atan2(directions(k, 1), directions(k, 0));
   for (int m = 0; m <= p; ++m) {
@@ -298,21 +298,12 @@ BasisFunctions basis_functions(int p, const Matrix& directions, int derivatives)
       const auto value = table.value.col(column).array();
       b.value.col(c) = co * value;
       if (m > 0) b.value.col(s) = si * value;
-      if (derivatives < 1) continue;
+      if (!derivatives) continue;
       const auto slope = table.d1.col(column).array();
       b.t.col(c) = co * slope;
       b.f.col(c) = -m * si * value;
       if (m > 0) b.t.col(s) = si * slope;
       if (m > 0) b.f.col(s) = m * co * value;
-      if (derivatives < 2) continue;
-      const auto curvature = table.d2.col(column).array();
-      b.tt.col(c) = co * curvature;
-      b.tf.col(c) = -m * si * slope;
-      b.ff.col(c) = -m * m * co * value;
-      if (m == 0) continue;
-      b.tt.col(s) = si * curvature;
-      b.tf.col(s) = m * co * slope;
-      b.ff.col(s) = -m * m * si * value;
     }
   }
   return b;
@@ -322,34 +313,17 @@ constexpr Eigen::Index point_batch = 256;  ///< keeps the tables of a batch in c
 
 }  // namespace
 
-Matrix basis_functions(int p, const Matrix& directions) { return basis_functions(p, directions, 0).value; }
+Matrix basis_functions(int p, const Matrix& directions) { return basis_functions(p, directions, false).value; }
 
 FirstDerivatives sample_points_first(const Coefficients& c, const Matrix& directions) {
   const Eigen::Index count = directions.rows(), fields = c.values.cols();
   FirstDerivatives d{Matrix(count, fields), Matrix(count, fields), Matrix(count, fields)};
   for (Eigen::Index start = 0; start < count; start += point_batch) {
     const Eigen::Index size = std::min(point_batch, count - start);
-    const BasisFunctions b = basis_functions(c.order, directions.middleRows(start, size), 1);
+    const BasisFunctions b = basis_functions(c.order, directions.middleRows(start, size), true);
     d.value.middleRows(start, size).noalias() = b.value * c.values;
     d.t.middleRows(start, size).noalias() = b.t * c.values;
     d.f.middleRows(start, size).noalias() = b.f * c.values;
-  }
-  return d;
-}
-
-SecondDerivatives sample_points_second(const Coefficients& c, const Matrix& directions) {
-  const Eigen::Index count = directions.rows(), fields = c.values.cols();
-  SecondDerivatives d;
-  for (Matrix* m : {&d.value, &d.t, &d.f, &d.tt, &d.tf, &d.ff}) m->resize(count, fields);
-  for (Eigen::Index start = 0; start < count; start += point_batch) {
-    const Eigen::Index size = std::min(point_batch, count - start);
-    const BasisFunctions b = basis_functions(c.order, directions.middleRows(start, size), 2);
-    d.value.middleRows(start, size).noalias() = b.value * c.values;
-    d.t.middleRows(start, size).noalias() = b.t * c.values;
-    d.f.middleRows(start, size).noalias() = b.f * c.values;
-    d.tt.middleRows(start, size).noalias() = b.tt * c.values;
-    d.tf.middleRows(start, size).noalias() = b.tf * c.values;
-    d.ff.middleRows(start, size).noalias() = b.ff * c.values;
   }
   return d;
 }

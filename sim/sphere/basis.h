@@ -76,6 +76,5 @@ Matrix basis_functions(int p, const Matrix& directions);
 Matrix sample_points(const Coefficients&, const Matrix& directions);
 /// Value and derivatives in theta and phi at arbitrary points (not at the poles themselves).
 FirstDerivatives sample_points_first(const Coefficients&, const Matrix& directions);
-SecondDerivatives sample_points_second(const Coefficients&, const Matrix& directions);
 
 }  // namespace sim

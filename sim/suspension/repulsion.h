@@ -23,8 +23,8 @@ struct Repulsion {
 /// Order of the grid of a vesicle of a radius R0 on which a repulsion is sampled, beside vesicles as small as the
 /// smallest.
 int repulsion_order(int degree, double radius, double smallest_radius, double range);
-/// Strength that keeps membranes apart where a fluid of viscosity 1 is strained at such a rate: measured in crowds of up
-/// to a volume fraction of 0.4 (docs/stepping.md), where the force between two tips, ~ strength x range, decides.
+/// Strength that keeps membranes apart where a fluid of viscosity 1 is strained at such a rate: measured in crowds of
+/// up to a volume fraction of 0.4 (docs/stepping.md), where the force between two tips, ~ strength x range, decides.
 double sufficient_repulsion(double straining_rate, double radius, double range);
 /// The least range that is sampled on vesicles from the smallest to the largest radius.
 double least_repulsion_range(double smallest_radius, double largest_radius);
