@@ -42,6 +42,42 @@ std::vector<std::vector<double>> gathered_by_mpi(std::span<const double> mine) {
   return all;
 }
 
+std::vector<std::vector<double>> exchanged_by_mpi(std::span<const std::vector<double>> given) {
+  const auto count = static_cast<int>(given.size());
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  std::vector<long long> sizes, theirs(given.size());
+  for (const auto& one : given) sizes.push_back(static_cast<long long>(one.size()));
+  MPI_Alltoall(sizes.data(), 1, MPI_LONG_LONG, theirs.data(), 1, MPI_LONG_LONG, MPI_COMM_WORLD);
+  std::vector<std::vector<double>> got;
+  for (const long long n : theirs) got.emplace_back(static_cast<std::size_t>(n));
+  std::vector<MPI_Request> requests;
+  const auto in_pieces = [](std::size_t size, auto&& transfer) {
+    for (std::size_t first = 0; first < size; first += most_at_once)
+      transfer(first, static_cast<int>(std::min(most_at_once, size - first)));
+  };
+  constexpr int tag = 1;
+  for (int r = 0; r < count; ++r) {
+    auto& one = got[static_cast<std::size_t>(r)];
+    if (r == rank) {
+      one = given[static_cast<std::size_t>(r)];
+      continue;
+    }
+    in_pieces(one.size(), [&](std::size_t first, int size) {
+      MPI_Irecv(one.data() + first, size, MPI_DOUBLE, r, tag, MPI_COMM_WORLD, &requests.emplace_back());
+    });
+  }
+  for (int r = 0; r < count; ++r) {
+    const auto& one = given[static_cast<std::size_t>(r)];
+    if (r == rank) continue;
+    in_pieces(one.size(), [&](std::size_t first, int size) {
+      MPI_Isend(one.data() + first, size, MPI_DOUBLE, r, tag, MPI_COMM_WORLD, &requests.emplace_back());
+    });
+  }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  return got;
+}
+
 }  // namespace
 
 Ranks started_ranks() {
@@ -63,6 +99,7 @@ Ranks started_ranks() {
   MPI_Comm_size(machine, &ranks.neighbours);
   MPI_Comm_free(&machine);
   ranks.gathered = gathered_by_mpi;
+  ranks.exchanged = exchanged_by_mpi;
   ranks.end_all = [](int status) { MPI_Abort(MPI_COMM_WORLD, status); };
   return ranks;
 }

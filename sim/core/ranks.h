@@ -19,12 +19,15 @@
 
 namespace sim {
 
-/// This process among its like. The functions are set where there are several; all ranks call `gathered` at once.
+/// This process among its like. The functions are set where there are several; all ranks call `gathered` or
+/// `exchanged` at once.
 struct Ranks {
   int rank = 0, count = 1;
   int neighbours = 1;  ///< ranks on this machine, itself included
   /// What each rank gives, by rank. May be of different lengths.
   std::function<std::vector<std::vector<double>>(std::span<const double>)> gathered;
+  /// What each rank gives this one, by rank, of what each gives each, by rank.
+  std::function<std::vector<std::vector<double>>(std::span<const std::vector<double>>)> exchanged;
   std::function<void(int status)> end_all;  ///< ends all processes at once, this one too
   std::shared_ptr<void> session;            ///< kept while the ranks talk
   bool first() const { return rank == 0; }

@@ -66,11 +66,12 @@ void renew(FastParts& parts, const FastSetting& s, const Vec3& sides) {
 
 FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& bodies,
                       const std::vector<FastGroup>& groups, const std::vector<Exclusion>& exclusions, bool dual,
-                      FastParts& parts) {
+                      FastParts& parts, const Ranks& ranks) {
   std::vector<FastBody> scaled_bodies = bodies;
   std::vector<FastGroup> scaled_groups = groups;
-  const Points none(3, 0);
-  std::vector<const Points*> sources, targets, all_targets;
+  std::vector<const Points*> sources, targets;
+  std::vector<char> wanted;
+  std::vector<int> owner;
   for (FastBody& body : scaled_bodies) {
     body.coarse /= setting.cutoff;
     body.fine /= setting.cutoff;
@@ -79,24 +80,55 @@ FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& b
   }
   for (FastGroup& group : scaled_groups) {
     group.points /= setting.cutoff;
-    all_targets.push_back(&group.points);
-    targets.push_back(group.wanted ? &group.points : &none);
+    targets.push_back(&group.points);
+    wanted.push_back(group.wanted);
+    owner.push_back(group.owner);
   }
-  const Points y = joined(sources), x = joined(all_targets);
+  const Points y = joined(sources), x = joined(targets);
   const Vec3 low = y.rowwise().minCoeff().cwiseMin(x.rowwise().minCoeff()),
              high = y.rowwise().maxCoeff().cwiseMax(x.rowwise().maxCoeff()), middle = 0.5 * (low + high);
   renew(parts, setting, high - low);
   std::optional<Eigen::Matrix3d> cell;
   if (setting.cell) cell = *setting.cell / setting.cutoff;
   return {setting,
+          dual,
           parts.split,
           parts.mesh,
-          parts.mesh->place(y, middle, dual),
-          parts.mesh->place(joined(targets), middle, false),
+          parts.mesh->place_sources(y, middle, dual, ranks),
+          parts.mesh->place_targets(x, middle, ranks),
           plan_pairs(scaled_bodies, scaled_groups, exclusions, setting.single_precision, cell),
           firsts(sources),
-          firsts(targets)};
+          firsts(targets),
+          std::move(wanted),
+          std::move(owner),
+          &ranks};
 }
+
+namespace {
+
+/// Velocities go from the ranks that read them off the mesh to those that own their points, by ascending point.
+void hand_over(const FastSum& sum, Points& velocity) {
+  const Ranks& ranks = *sum.ranks;
+  const auto each_point = [&](auto&& at) {
+    for (std::size_t g = 0; g < sum.owner.size(); ++g)
+      for (Eigen::Index k = sum.first_target[g]; k < sum.first_target[g + 1]; ++k)
+        at(static_cast<std::size_t>(sum.targets.home[std::size_t(k)]), static_cast<std::size_t>(sum.owner[g]), k);
+  };
+  const auto here = static_cast<std::size_t>(ranks.rank);
+  std::vector<std::vector<double>> messages(static_cast<std::size_t>(ranks.count));
+  each_point([&](std::size_t home, std::size_t owner, Eigen::Index k) {
+    if (home != here || owner == here) return;
+    for (int c = 0; c < 3; ++c) messages[owner].push_back(velocity(c, k));
+  });
+  messages = ranks.exchanged(messages);
+  std::vector<std::size_t> read(messages.size());
+  each_point([&](std::size_t home, std::size_t owner, Eigen::Index k) {
+    if (owner != here || home == here) return;
+    for (int c = 0; c < 3; ++c) velocity(c, k) = messages[home][read[home]++];
+  });
+}
+
+}  // namespace
 
 std::vector<Points> fast_velocity(const FastSum& sum, std::span<const FastStrengths> coarse,
                                   std::span<const FastStrengths> fine) {
@@ -105,7 +137,7 @@ std::vector<Points> fast_velocity(const FastSum& sum, std::span<const FastStreng
   std::vector<FastStrengths> scaled_coarse(coarse.begin(), coarse.end()), scaled_fine(fine.begin(), fine.end());
   bool dual = false;
   for (const FastStrengths& s : coarse) dual = dual || s.dual.cols() > 0;
-  if (dual && sum.sources.slopes.empty()) throw std::invalid_argument("the fast sum was planned without double layers");
+  if (dual && !sum.dual) throw std::invalid_argument("the fast sum was planned without double layers");
   Points force(3, sum.first_source.back());
   Tensors tensors = Tensors::Zero(6, dual ? sum.first_source.back() : 0);
   parallel_for(bodies, [&](int j) {
@@ -119,7 +151,8 @@ std::vector<Points> fast_velocity(const FastSum& sum, std::span<const FastStreng
     if (s.dual.cols() > 0) tensors.middleCols(first, s.dual.cols()) = s.dual;
   });
   Points whole = Points::Zero(3, sum.first_target.back());
-  sum.mesh->add_velocity(sum.sources, force, tensors, sum.targets, whole);
+  sum.mesh->add_velocity(sum.sources, force, tensors, sum.targets, whole, *sum.ranks);
+  if (sum.ranks->count > 1) hand_over(sum, whole);
   if (sum.setting.cell && dual) {
     Vec3 moment = Vec3::Zero();
     for (std::size_t j = 0; j < scaled_coarse.size(); ++j) {
@@ -134,8 +167,10 @@ std::vector<Points> fast_velocity(const FastSum& sum, std::span<const FastStreng
     whole.colwise() -= 4 * std::numbers::pi / (3 * volume) * moment;
   }
   std::vector<Points> velocity;
-  for (std::size_t g = 0; g + 1 < sum.first_target.size(); ++g)
-    velocity.emplace_back(whole.middleCols(sum.first_target[g], sum.first_target[g + 1] - sum.first_target[g]));
+  for (std::size_t g = 0; g < sum.wanted.size(); ++g)
+    velocity.emplace_back(
+        sum.wanted[g] ? Points(whole.middleCols(sum.first_target[g], sum.first_target[g + 1] - sum.first_target[g]))
+                      : Points(3, 0));
   add_pairs(sum.pairs, *sum.split, scaled_coarse, scaled_fine, velocity);
   return velocity;
 }

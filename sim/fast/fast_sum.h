@@ -32,11 +32,15 @@ FastSetting fast_setting(double tolerance, bool dual);
 /// One geometry; strengths may change.
 struct FastSum {
   FastSetting setting;
+  bool dual = false;  ///< double layers are planned
   std::shared_ptr<const KernelSplit> split;
   std::shared_ptr<const Mesh> mesh;
   MeshPoints sources, targets;
   PairLists pairs;
   std::vector<Eigen::Index> first_source, first_target;  ///< of bodies and of groups, and the ends
+  std::vector<char> wanted;                              ///< by group
+  std::vector<int> owner;                                ///< likewise
+  const Ranks* ranks = &alone;                           ///< who divide the mesh
 };
 
 /// Split, window and mesh depend on few numbers: whoever makes many sums keeps them.
@@ -48,11 +52,13 @@ struct FastParts {
   std::array<int, 3> nodes{};  ///< in free space
 };
 
-/// `dual`: some strengths have double layers. `parts`: of an earlier sum; renewed where they do not fit.
+/// `dual`: some strengths have double layers. `parts`: of an earlier sum; renewed where they do not fit. Ranks, which
+/// live longer than the sum, have the same bodies and groups; each wants those that it owns.
 FastSum plan_fast_sum(const FastSetting&, const std::vector<FastBody>&, const std::vector<FastGroup>&,
-                      const std::vector<Exclusion>&, bool dual, FastParts& parts);
+                      const std::vector<Exclusion>&, bool dual, FastParts& parts, const Ranks& = alone);
 
-/// Velocity at the targets of each group. Does not depend on the number of threads. Throws std::invalid_argument when
+/// Velocity at the targets of each group that is wanted; ranks call it together, with all strengths. Does not depend on
+/// the number of threads and ranks. Throws std::invalid_argument when
 /// there are double layers that were not planned.
 std::vector<Points> fast_velocity(const FastSum&, std::span<const FastStrengths> coarse,
                                   std::span<const FastStrengths> fine);

@@ -186,68 +186,122 @@ void Mesh::Plan::make_periodic_multiplier(const KernelSplit& split, double volum
   });
 }
 
-MeshPoints Mesh::place(const Points& points, const Eigen::Vector3d& middle, bool slopes) const {
-  const Plan& m = *plan_;
-  const int width = m.window.width(), padded = m.padded_width;
-  const std::size_t stride = 3 * static_cast<std::size_t>(padded);
-  MeshPoints placed;
-  placed.count = points.cols();
-  const auto count = static_cast<std::size_t>(placed.count);
-  placed.start.resize(3 * count);
-  placed.windows.resize(stride * count);
-  if (slopes) placed.slopes.resize(stride * count);
+std::vector<int> Mesh::Plan::starts(const Points& points, const Eigen::Vector3d& middle) const {
+  const int width = window.width();
+  std::vector<int> all(static_cast<std::size_t>(3 * points.cols()));
   constexpr int piece = 512;
-  parallel_for(static_cast<int>((placed.count + piece - 1) / piece), [&](int part) {
-    const Eigen::Index end = std::min<Eigen::Index>(placed.count, Eigen::Index(part + 1) * piece);
-    for (Eigen::Index k = Eigen::Index(part) * piece; k < end; ++k) {
-      const Eigen::Vector3d x = m.per_node * (points.col(k) - middle);
+  const auto total = static_cast<int>(points.cols());
+  parallel_for((total + piece - 1) / piece, [&](int part) {
+    for (int k = part * piece; k < std::min(total, (part + 1) * piece); ++k) {
+      const Eigen::Vector3d x = per_node * (points.col(k) - middle);
       for (int d = 0; d < 3; ++d) {
-        const std::size_t slot = std::size_t(3 * k + d);
-        const double low = x[d] + (m.nodes[d] - 1) / 2.0 - width / 2.0, first = std::ceil(low);
-        const double start = m.periodic ? first - m.nodes[d] * std::floor(first / m.nodes[d]) : first;
-        if (!(start >= 0 && start + (m.periodic ? 1 : width) <= m.nodes[d]))
+        const double first = std::ceil(x[d] + (nodes[d] - 1) / 2.0 - width / 2.0);
+        const double start = periodic ? first - nodes[d] * std::floor(first / nodes[d]) : first;
+        if (!(start >= 0 && start + (periodic ? 1 : width) <= nodes[d]))
           throw std::domain_error("a point lies outside the mesh");
-        placed.start[slot] = static_cast<int>(start);
-        double* w = &placed.windows[slot * std::size_t(padded)];
-        double* s = slopes ? &placed.slopes[slot * std::size_t(padded)] : nullptr;
-        m.window.evaluate(first - low, w, s);
-        for (int j = width; j < padded; ++j) w[j] = 0;
-        for (int j = width; s && j < padded; ++j) s[j] = 0;
+        all[std::size_t(3 * k + d)] = static_cast<int>(start);
+      }
+    }
+  });
+  return all;
+}
+
+MeshPoints Mesh::Plan::placed(const Points& points, const Eigen::Vector3d& middle, const std::vector<int>& starts,
+                              std::vector<int> wanted, bool slopes) const {
+  const int width = window.width();
+  const auto padded = static_cast<std::size_t>(padded_width);
+  const std::size_t count = wanted.size();
+  MeshPoints result;
+  result.point = std::move(wanted);
+  result.start.resize(3 * count);
+  result.windows.resize(3 * padded * count);
+  if (slopes) result.slopes.resize(3 * padded * count);
+  constexpr int piece = 512;
+  parallel_for(static_cast<int>((count + piece - 1) / piece), [&](int part) {
+    const std::size_t end = std::min(count, std::size_t(part + 1) * piece);
+    for (std::size_t k = std::size_t(part) * piece; k < end; ++k) {
+      const int point = result.point[k];
+      const Eigen::Vector3d x = per_node * (points.col(point) - middle);
+      for (int d = 0; d < 3; ++d) {
+        const std::size_t slot = 3 * k + std::size_t(d);
+        const double low = x[d] + (nodes[d] - 1) / 2.0 - width / 2.0;
+        result.start[slot] = starts[std::size_t(3 * point + d)];
+        double* w = &result.windows[slot * padded];
+        double* s = slopes ? &result.slopes[slot * padded] : nullptr;
+        window.evaluate(std::ceil(low) - low, w, s);
+        for (std::size_t j = std::size_t(width); j < padded; ++j) w[j] = 0;
+        for (std::size_t j = std::size_t(width); s && j < padded; ++j) s[j] = 0;
       }
     }
   });
   // By blocks of planes, then by columns of 8 x 8 nodes.
   std::vector<std::tuple<int, int, int, int>> keys;
   for (std::size_t k = 0; k < count; ++k) {
-    const int* at = &placed.start[3 * k];
-    keys.emplace_back(at[2] / m.block, at[1] / 8, at[0] / 8, static_cast<int>(k));
+    const int* at = &result.start[3 * k];
+    keys.emplace_back(at[2] / block, at[1] / 8, at[0] / 8, static_cast<int>(k));
   }
   std::sort(keys.begin(), keys.end());
-  for (const auto& key : keys) placed.order.push_back(std::get<3>(key));
+  for (const auto& key : keys) result.order.push_back(std::get<3>(key));
+  return result;
+}
+
+MeshPoints Mesh::place_sources(const Points& points, const Eigen::Vector3d& middle, bool slopes,
+                               const Ranks& ranks) const {
+  const Plan& m = *plan_;
+  const int width = m.window.width();
+  const auto reaches = [&](int start, int z0, int z1) {
+    return (start < z1 && start + width > z0) || start + width - m.nodes[2] > z0;
+  };
+  const std::vector<int> starts = m.starts(points, middle);
+  const MeshSlab slab = m.slab(ranks.rank, ranks.count);
+  std::vector<int> wanted;
+  for (int k = 0; k < static_cast<int>(points.cols()); ++k)
+    if (ranks.count == 1 ||
+        (slab.planes > 0 && reaches(starts[std::size_t(3 * k + 2)], slab.first_plane, slab.first_plane + slab.planes)))
+      wanted.push_back(k);
+  MeshPoints placed = m.placed(points, middle, starts, std::move(wanted), slopes);
   placed.first.push_back(0);
   for (int b = 0; b < m.blocks; ++b) {
     const int z0 = b * m.block, z1 = std::min(m.nodes[2], z0 + m.block);
-    const auto reaches = [&](int start) {
-      return (start < z1 && start + width > z0) || start + width - m.nodes[2] > z0;
-    };
     for (const int k : placed.order)
-      if (reaches(placed.start[3 * std::size_t(k) + 2])) placed.touching.push_back(k);
+      if (reaches(placed.start[3 * std::size_t(k) + 2], z0, z1)) placed.touching.push_back(k);
     placed.first.push_back(static_cast<int>(placed.touching.size()));
   }
   return placed;
 }
 
-void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
-                        Points& velocity) const {
+MeshPoints Mesh::place_targets(const Points& points, const Eigen::Vector3d& middle, const Ranks& ranks) const {
   const Plan& m = *plan_;
+  const std::vector<int> starts = m.starts(points, middle);
+  std::vector<int> wanted, home;
+  for (int k = 0; k < static_cast<int>(points.cols()); ++k) {
+    home.push_back(m.home(starts[std::size_t(3 * k + 2)], ranks.count));
+    if (home.back() == ranks.rank) wanted.push_back(k);
+  }
+  MeshPoints placed = m.placed(points, middle, starts, std::move(wanted), false);
+  placed.home = std::move(home);
+  return placed;
+}
+
+void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
+                        Points& velocity, const Ranks& ranks) const {
+  const Plan& m = *plan_;
+  const MeshSlab slab = m.slab(ranks.rank, ranks.count);
+  const bool divided = ranks.count > 1;
   std::vector<Plan::Field> fields(dual.cols() > 0 ? 4 : 3);
-  for (Plan::Field& field : fields) field.resize(m.plane * std::size_t(m.nodes[2]));
-  m.spread(sources, force, dual, fields);
-  m.forward_planes(fields);
-  m.multiply_columns(fields);
-  m.backward_planes(fields);
-  m.read(fields, targets, velocity);
-  if (!m.periodic) velocity.colwise() += 2 / m.cut * force.rowwise().sum();
+  for (Plan::Field& field : fields) field.resize(m.plane * std::size_t(slab.planes + m.halo(ranks.count)));
+  m.spread(sources, force, dual, slab, fields);
+  m.forward_planes(slab, fields);
+  if (divided)
+    m.multiply_columns(slab, ranks, fields);
+  else
+    m.multiply_columns(fields);
+  m.backward_planes(slab, fields);
+  if (divided) m.fill_halo(slab, ranks, fields);
+  m.read(fields, targets, slab, divided, velocity);
+  if (m.periodic) return;
+  const Eigen::Vector3d net = 2 / m.cut * force.rowwise().sum();
+  for (const int k : targets.point) velocity.col(k) += net;
 }
 
 }  // namespace sim

@@ -11,8 +11,12 @@
 //
 // In a periodic cell, which may be sheared, wave vectors are those of its lattice, and the one of zero is left out: the
 // mean velocity over the whole cell is zero, and a uniform pressure gradient balances the net force.
+//
+// Ranks divide the mesh into slabs along z, and for transforms along z into slabs along y; each number comes of the
+// same sums in the same order, whoever makes it.
 #pragma once
 
+#include "sim/core/ranks.h"
 #include "sim/core/raw_memory.h"
 #include "sim/fast/window.h"
 
@@ -27,13 +31,14 @@ namespace sim {
 using Points = Eigen::Matrix3Xd;                           ///< a point or vector a column
 using Tensors = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< symmetric: xx, xy, xz, yy, yz, zz
 
-/// Points on a mesh with their windows.
+/// Points on a mesh with their windows; of several ranks, those that this one's slab has to do with.
 struct MeshPoints {
-  Eigen::Index count = 0;
+  std::vector<int> point;             ///< which one of those that were given
   std::vector<int> start;             ///< 3 a point: the first node in x, y, z
   RawVector<double> windows, slopes;  ///< 3 a point, padded to whole vectors; slopes empty unless asked for
   std::vector<int> order;             ///< neighbours together
-  std::vector<int> touching, first;   ///< the points whose windows reach into block b: touching[first[b]] ...
+  std::vector<int> touching, first;   ///< sources whose windows reach into block b: touching[first[b]] ...
+  std::vector<int> home;              ///< targets: by point given, the rank in whose slab its window begins
 };
 
 /// Plan; immutable.
@@ -54,12 +59,13 @@ class Mesh {
   static double padded_nodes(const std::array<int, 3>& nodes);
 
   /// Points in a box around the middle of the mesh, which is at `middle`; anywhere, in a periodic cell. Throws
-  /// std::domain_error when a window would leave the mesh.
-  MeshPoints place(const Points&, const Eigen::Vector3d& middle, bool slopes) const;
-  /// Adds the smooth part of all sources at all targets; without double layer `dual` has no columns. Does not depend on
-  /// the number of threads.
+  /// std::domain_error when a window would leave the mesh. Ranks give the same points.
+  MeshPoints place_sources(const Points&, const Eigen::Vector3d& middle, bool slopes, const Ranks& = alone) const;
+  MeshPoints place_targets(const Points&, const Eigen::Vector3d& middle, const Ranks& = alone) const;
+  /// Adds the smooth part of all sources at the targets placed here; without double layer `dual` has no columns. Does
+  /// not depend on the number of threads and ranks, which call it together.
   void add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
-                    Points& velocity) const;
+                    Points& velocity, const Ranks& = alone) const;
 
  private:
   struct Plan;

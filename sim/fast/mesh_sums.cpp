@@ -61,19 +61,22 @@ void load_window(const double* from, Lane* window) {
 
 }  // namespace
 
-void Mesh::Plan::spread(const MeshPoints& points, const Points& force, const Tensors& dual,
+void Mesh::Plan::spread(const MeshPoints& points, const Points& force, const Tensors& dual, const MeshSlab& slab,
                         std::span<Field> fields) const {
   const int width = window.width();
   with_vectors(padded_width, [&](auto count) {
     constexpr int vectors = count.value, padded = vectors * lanes;
     parallel_for(blocks, [&](int b) {
-      const int z0 = b * block, z1 = std::min(nodes[2], z0 + block);
-      for (Field& field : fields) std::memset(&field[at(z0, 0, 0)], 0, std::size_t(z1 - z0) * plane * sizeof(double));
+      const int z0 = std::max(b * block, slab.first_plane),
+                z1 = std::min({nodes[2], (b + 1) * block, slab.first_plane + slab.planes});
+      if (z0 >= z1) return;
+      for (Field& field : fields)
+        std::memset(&field[at(z0 - slab.first_plane, 0, 0)], 0, std::size_t(z1 - z0) * plane * sizeof(double));
       for (int i = points.first[std::size_t(b)]; i < points.first[std::size_t(b) + 1]; ++i) {
         const std::size_t k = std::size_t(points.touching[std::size_t(i)]);
         const int* start = &points.start[3 * k];
         const double *wx = &points.windows[3 * padded * k], *wy = wx + padded, *wz = wy + padded;
-        const PointStrength s = strength_of(force, dual, Eigen::Index(k), per_node);
+        const PointStrength s = strength_of(force, dual, points.point[k], per_node);
         Lane values[vectors], slopes[vectors] = {};
         load_window<vectors>(wx, values);
         const double *dx = nullptr, *dy = nullptr, *dz = nullptr;
@@ -87,7 +90,7 @@ void Mesh::Plan::spread(const MeshPoints& points, const Points& force, const Ten
           const int in_z = wrapped(start[2] + z, 2);
           if (in_z < z0 || in_z >= z1) continue;
           for (int y = 0; y < width; ++y) {
-            const std::size_t to = at(in_z, wrapped(start[1] + y, 1), start[0]);
+            const std::size_t to = at(in_z - slab.first_plane, wrapped(start[1] + y, 1), start[0]);
             const double w = wy[y] * wz[z];
             if (fields.size() == 3) {
               for (std::size_t c = 0; c < 3; ++c) add_row<vectors>(&fields[c][to], s.force[c] * w, values);
@@ -105,9 +108,9 @@ void Mesh::Plan::spread(const MeshPoints& points, const Points& force, const Ten
   });
 }
 
-void Mesh::Plan::forward_planes(std::span<Field> fields) const {
-  parallel_for(int(fields.size()) * nodes[2], [&](int task) {
-    double* g = &fields[std::size_t(task / nodes[2])][at(task % nodes[2], 0, 0)];
+void Mesh::Plan::forward_planes(const MeshSlab& slab, std::span<Field> fields) const {
+  parallel_for(int(fields.size()) * slab.planes, [&](int task) {
+    double* g = &fields[std::size_t(task / slab.planes)][at(task % slab.planes, 0, 0)];
     for (int y = 0; periodic && y < nodes[1]; ++y) {  // windows reached beyond the end of the rows
       double* begin = g + std::size_t(y) * row;
       for (int x = 0; x < padded_width; ++x) begin[x] += begin[nodes[0] + x];
@@ -117,9 +120,9 @@ void Mesh::Plan::forward_planes(std::span<Field> fields) const {
   });
 }
 
-void Mesh::Plan::backward_planes(std::span<Field> fields) const {
-  parallel_for(3 * nodes[2], [&](int task) {
-    double* g = &fields[std::size_t(task / nodes[2])][at(task % nodes[2], 0, 0)];
+void Mesh::Plan::backward_planes(const MeshSlab& slab, std::span<Field> fields) const {
+  parallel_for(3 * slab.planes, [&](int task) {
+    double* g = &fields[std::size_t(task / slab.planes)][at(task % slab.planes, 0, 0)];
     fftw_execute_dft(fftw[from_y], complex_of(g), complex_of(g));
     fftw_execute_dft_c2r(fftw[from_x], complex_of(g), g);
     for (int y = 0; periodic && y < nodes[1]; ++y) {
@@ -153,49 +156,124 @@ void apply_kernel(const double* b, const Eigen::Vector3d& start, const Eigen::Ve
 
 }  // namespace
 
-void Mesh::Plan::multiply_columns(std::span<Field> fields) const {
+template <class Row>
+void Mesh::Plan::multiply_row_columns(int y, std::size_t count, const Row& row_at) const {
   const int half = full[0] / 2 + 1, pieces = (half + batch - 1) / batch;
   const std::array<std::size_t, 3> size = multiplier_size();
-  parallel_for(full[1], [&](int y) {
-    const std::size_t length = std::size_t(2 * batch) * std::size_t(full[2]);
-    RawVector<double> buffer(4 * length);
-    double* channels[4];
-    for (std::size_t c = 0; c < 4; ++c) channels[c] = &buffer[c * length];
-    for (int piece = 0; piece < pieces; ++piece) {
-      const int x0 = piece * batch, width = std::min(batch, half - x0);
-      const std::size_t bytes = std::size_t(2 * width) * sizeof(double);
-      for (std::size_t c = 0; c < fields.size(); ++c) {
-        if (width < batch)
-          std::memset(channels[c], 0, length * sizeof(double));
-        else if (!periodic)
-          std::memset(channels[c] + length / 2, 0, length / 2 * sizeof(double));
-        for (int z = 0; z < nodes[2]; ++z)
-          std::memcpy(channels[c] + std::size_t(2 * batch) * std::size_t(z), &fields[c][at(z, y, 2 * x0)], bytes);
-        fftw_execute_dft(fftw[to_z], complex_of(channels[c]), complex_of(channels[c]));
-      }
-      for (int z = 0; z < full[2]; ++z) {
-        double b[batch];
-        for (int i = 0; i < width; ++i)
-          b[i] = multiplier[(wave_place(y, 1) * size[0] + std::size_t(x0 + i)) * size[2] + wave_place(z, 2)];
-        apply_kernel(b, waves * Eigen::Vector3d(x0, signed_wave(y, 1), signed_wave(z, 2)), waves.col(0), width,
-                     channels, std::size_t(2 * batch) * std::size_t(z), fields.size() == 4);
-      }
-      for (std::size_t c = 0; c < 3; ++c) {
-        fftw_execute_dft(fftw[from_z], complex_of(channels[c]), complex_of(channels[c]));
-        for (int z = 0; z < nodes[2]; ++z)
-          std::memcpy(&fields[c][at(z, y, 2 * x0)], channels[c] + std::size_t(2 * batch) * std::size_t(z), bytes);
-      }
+  const std::size_t length = std::size_t(2 * batch) * std::size_t(full[2]);
+  RawVector<double> buffer(4 * length);
+  double* channels[4];
+  for (std::size_t c = 0; c < 4; ++c) channels[c] = &buffer[c * length];
+  for (int piece = 0; piece < pieces; ++piece) {
+    const int x0 = piece * batch, width = std::min(batch, half - x0);
+    const std::size_t bytes = std::size_t(2 * width) * sizeof(double);
+    for (std::size_t c = 0; c < count; ++c) {
+      if (width < batch)
+        std::memset(channels[c], 0, length * sizeof(double));
+      else if (!periodic)
+        std::memset(channels[c] + length / 2, 0, length / 2 * sizeof(double));
+      for (int z = 0; z < nodes[2]; ++z)
+        std::memcpy(channels[c] + std::size_t(2 * batch) * std::size_t(z), row_at(c, z, y) + 2 * x0, bytes);
+      fftw_execute_dft(fftw[to_z], complex_of(channels[c]), complex_of(channels[c]));
     }
+    for (int z = 0; z < full[2]; ++z) {
+      double b[batch];
+      for (int i = 0; i < width; ++i)
+        b[i] = multiplier[(wave_place(y, 1) * size[0] + std::size_t(x0 + i)) * size[2] + wave_place(z, 2)];
+      apply_kernel(b, waves * Eigen::Vector3d(x0, signed_wave(y, 1), signed_wave(z, 2)), waves.col(0), width, channels,
+                   std::size_t(2 * batch) * std::size_t(z), count == 4);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      fftw_execute_dft(fftw[from_z], complex_of(channels[c]), complex_of(channels[c]));
+      for (int z = 0; z < nodes[2]; ++z)
+        std::memcpy(row_at(c, z, y) + 2 * x0, channels[c] + std::size_t(2 * batch) * std::size_t(z), bytes);
+    }
+  }
+}
+
+void Mesh::Plan::multiply_columns(std::span<Field> fields) const {
+  const auto row_at = [&](std::size_t c, int z, int y) { return &fields[c][at(z, y, 0)]; };
+  parallel_for(full[1], [&](int y) { multiply_row_columns(y, fields.size(), row_at); });
+}
+
+void Mesh::Plan::multiply_columns(const MeshSlab& mine, const Ranks& ranks, std::span<Field> fields) const {
+  // Rows of a message: by channel, plane of the slab, row of the spectrum; as they come, they serve as the array of
+  // columns: that of plane z lies in the message of its rank.
+  const std::size_t length = static_cast<std::size_t>(full[0] / 2 + 1) * 2;
+  const auto slot = [&](std::size_t c, int plane_number, int row_number, int planes, int rows) {
+    return ((c * std::size_t(planes) + std::size_t(plane_number)) * std::size_t(rows) + std::size_t(row_number)) *
+           length;
+  };
+  const auto between = [&](std::size_t channels, std::vector<std::vector<double>>& messages, bool out) {
+    for (int r = 0; r < ranks.count; ++r) {
+      const MeshSlab other = slab(r, ranks.count);
+      std::vector<double>& message = messages[std::size_t(r)];
+      if (out) message.resize(slot(channels, 0, 0, mine.planes, other.rows));
+      for (std::size_t c = 0; c < channels; ++c)
+        for (int z = 0; z < mine.planes; ++z)
+          for (int y = 0; y < other.rows; ++y) {
+            double *there = &message[slot(c, z, y, mine.planes, other.rows)],
+                   *here = &fields[c][at(z, other.first_row + y, 0)];
+            std::memcpy(out ? there : here, out ? here : there, length * sizeof(double));
+          }
+    }
+  };
+  std::vector<std::vector<double>> messages(static_cast<std::size_t>(ranks.count));
+  between(fields.size(), messages, true);
+  messages = ranks.exchanged(messages);
+  std::vector<int> rank_of;  // by plane
+  for (int r = 0; r < ranks.count; ++r) rank_of.resize(rank_of.size() + std::size_t(slab(r, ranks.count).planes), r);
+  const auto row_at = [&](std::size_t c, int z, int y) {
+    const int r = rank_of[std::size_t(z)];
+    const MeshSlab other = slab(r, ranks.count);
+    return &messages[std::size_t(r)][slot(c, z - other.first_plane, y - mine.first_row, other.planes, mine.rows)];
+  };
+  parallel_for(mine.rows, [&](int y) { multiply_row_columns(mine.first_row + y, fields.size(), row_at); });
+  for (int r = 0; r < ranks.count; ++r)  // three channels go back, which stand first
+    messages[std::size_t(r)].resize(slot(3, 0, 0, slab(r, ranks.count).planes, mine.rows));
+  messages = ranks.exchanged(messages);
+  between(3, messages, false);
+}
+
+void Mesh::Plan::fill_halo(const MeshSlab& mine, const Ranks& ranks, std::span<Field> fields) const {
+  // Rank r wants the planes behind its own, around the end; in free space there are none beyond it, nor windows.
+  const auto wanted = [&](const MeshSlab& slab_of_rank, auto&& take) {
+    if (slab_of_rank.planes == 0) return;
+    for (int h = 0; h < halo(ranks.count); ++h) {
+      const int beyond = slab_of_rank.first_plane + slab_of_rank.planes + h;
+      if (!periodic && beyond >= nodes[2]) return;
+      take(slab_of_rank.planes + h, beyond % nodes[2]);
+    }
+  };
+  const std::size_t size = static_cast<std::size_t>(nodes[1]) * row;
+  std::vector<std::vector<double>> messages(static_cast<std::size_t>(ranks.count));
+  for (int r = 0; r < ranks.count; ++r)
+    wanted(slab(r, ranks.count), [&](int, int z) {
+      const int here = z - mine.first_plane;
+      if (here < 0 || here >= mine.planes) return;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double* from = &fields[c][at(here, 0, 0)];
+        messages[std::size_t(r)].insert(messages[std::size_t(r)].end(), from, from + size);
+      }
+    });
+  messages = ranks.exchanged(messages);
+  std::vector<std::size_t> read(static_cast<std::size_t>(ranks.count));
+  wanted(mine, [&](int to, int z) {
+    const auto r = static_cast<std::size_t>(home(z, ranks.count));
+    for (std::size_t c = 0; c < 3; ++c, read[r] += size)
+      std::memcpy(&fields[c][at(to, 0, 0)], &messages[r][read[r]], size * sizeof(double));
   });
 }
 
-void Mesh::Plan::read(std::span<const Field> fields, const MeshPoints& points, Points& velocity) const {
+void Mesh::Plan::read(std::span<const Field> fields, const MeshPoints& points, const MeshSlab& slab, bool divided,
+                      Points& velocity) const {
   const int width = window.width();
   constexpr int piece = 256;
+  const auto total = points.order.size();
   with_vectors(padded_width, [&](auto count) {
     constexpr int vectors = count.value, padded = vectors * lanes;
-    parallel_for(int((points.count + piece - 1) / piece), [&](int part) {
-      const std::size_t end = std::min(std::size_t(points.count), std::size_t(part + 1) * piece);
+    parallel_for(int((total + piece - 1) / piece), [&](int part) {
+      const std::size_t end = std::min(total, std::size_t(part + 1) * piece);
       for (std::size_t i = std::size_t(part) * piece; i < end; ++i) {
         const std::size_t k = std::size_t(points.order[i]);
         const int* start = &points.start[3 * k];
@@ -203,7 +281,8 @@ void Mesh::Plan::read(std::span<const Field> fields, const MeshPoints& points, P
         Lane sums[3][vectors] = {};
         for (int z = 0; z < width; ++z)
           for (int y = 0; y < width; ++y) {
-            const std::size_t from = at(wrapped(start[2] + z, 2), wrapped(start[1] + y, 1), start[0]);
+            const int in_z = divided ? start[2] + z - slab.first_plane : wrapped(start[2] + z, 2);
+            const std::size_t from = at(in_z, wrapped(start[1] + y, 1), start[0]);
             const double w = wy[y] * wz[z];
             for (std::size_t c = 0; c < 3; ++c)
               for (int v = 0; v < vectors; ++v) sums[c][v] += w * load_lane(&fields[c][from + std::size_t(lanes * v)]);
@@ -211,7 +290,7 @@ void Mesh::Plan::read(std::span<const Field> fields, const MeshPoints& points, P
         for (int c = 0; c < 3; ++c) {
           Lane sum{};
           for (int v = 0; v < vectors; ++v) sum += load_lane(wx + lanes * v) * sums[c][v];
-          velocity(c, Eigen::Index(k)) += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+          velocity(c, points.point[k]) += (sum[0] + sum[1]) + (sum[2] + sum[3]);
         }
       }
     });

@@ -26,6 +26,7 @@ struct FastGroup {
   Points points;
   int body = -1;       ///< whose points they are, which they do not see; -1: of none
   bool wanted = true;  ///< else no velocities are, and the points only tell how far the targets of all reach
+  int owner = 0;       ///< of several ranks, the one that wants them
 };
 
 /// Of one geometry.

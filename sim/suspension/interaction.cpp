@@ -127,11 +127,14 @@ FastInteraction plan_fast(Plans& plans, const Interaction& w, std::span<const Co
     fast.spread[k] = make_sources(*fast.spread_basis[k], positions[k]);
     bodies[k] = {fast.spread[k].points.transpose(), w.sources[k].points.transpose(),
                  coarse_limit(tolerance) * fast.spread[k].spacing.maxCoeff()};
-    groups[k] = {(*w.far.sources)[k].points.transpose(), i, w.division.mine(i)};
+    groups[k] = {(*w.far.sources)[k].points.transpose(), i, w.division.mine(i),
+                 w.division.whole() ? 0 : w.division.owner[k]};
   });
   const bool dual = std::any_of(w.dual.begin(), w.dual.end(), [](char d) { return d != 0; });
-  fast.sum = plans.with_fast_parts(
-      [&](FastParts& parts) { return plan_fast_sum(choice.setting, bodies, groups, excluded, dual, parts); });
+  fast.sum = plans.with_fast_parts([&](FastParts& parts) {
+    return plan_fast_sum(choice.setting, bodies, groups, excluded, dual, parts,
+                         w.division.whole() ? alone : *w.division.ranks);
+  });
   fast.finely.resize(std::size_t(n));
   for (const PairLists::Group& group : fast.sum.pairs.groups)
     for (const PairLists::Segment& segment : group.segments)

@@ -1,5 +1,6 @@
 // Several ranks, here threads of one process: what each has after a collective call.
 #include "sim/core/divided.h"
+#include "sim/fast/fast_sum.h"
 #include "sim/stepping/stepper.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
@@ -20,6 +21,7 @@ template <class F>
 void as_ranks(int count, F&& f) {
   std::barrier meeting(count);
   std::vector<std::vector<double>> table(static_cast<std::size_t>(count));
+  std::vector<std::vector<std::vector<double>>> letters(static_cast<std::size_t>(count));
   std::vector<std::thread> threads;
   for (int rank = 0; rank < count; ++rank)
     threads.emplace_back([&, rank] {
@@ -33,6 +35,14 @@ void as_ranks(int count, F&& f) {
         auto all = table;
         meeting.arrive_and_wait();
         return all;
+      };
+      ranks.exchanged = [&, rank](std::span<const std::vector<double>> given) {
+        letters[std::size_t(rank)].assign(given.begin(), given.end());
+        meeting.arrive_and_wait();
+        std::vector<std::vector<double>> got;
+        for (const auto& from : letters) got.push_back(from[std::size_t(rank)]);
+        meeting.arrive_and_wait();
+        return got;
       };
       f(ranks);
     });
@@ -153,4 +163,52 @@ TEST_CASE("a step taken by three ranks is the step of one, bit for bit, on each 
   std::vector<std::vector<double>> found(3);
   as_ranks(3, [&](const Ranks& ranks) { found[std::size_t(ranks.rank)] = stepped(ranks); });
   for (const auto& one : found) CHECK(one == expected);
+}
+
+TEST_CASE("ranks that divide the mesh of a fast sum get the bits of one that has it whole") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const int bodies_count = 7, points = 30;
+  std::vector<FastBody> bodies;
+  std::vector<FastGroup> groups;
+  std::vector<FastStrengths> strengths;
+  const auto numbers = [&](Eigen::Index rows) {
+    return Matrix(Matrix::NullaryExpr(rows, points, [&] { return uniform(random); }));
+  };
+  for (int b = 0; b < bodies_count; ++b) {
+    bodies.push_back({Points(3 * numbers(3)), {}, 0});
+    groups.push_back({bodies.back().coarse, b, true, 0});
+    strengths.push_back({numbers(3), numbers(6)});
+  }
+  const std::vector<FastStrengths> none(bodies_count);
+  Eigen::Matrix3d sheared = Eigen::Vector3d(6, 6, 6).asDiagonal();
+  sheared(0, 2) = 1.3;
+  for (const auto& cell : {std::optional<Eigen::Matrix3d>(), std::optional<Eigen::Matrix3d>(sheared)})
+    for (const bool dual : {false, true}) {
+      FastSetting setting = fast_setting(1e-4, dual);
+      setting.cutoff = 2;
+      setting.cell = cell;
+      std::vector<FastStrengths> given = strengths;
+      for (FastStrengths& s : given)
+        if (!dual) s.dual.resize(6, 0);
+      FastParts parts;
+      const auto whole = fast_velocity(plan_fast_sum(setting, bodies, groups, {}, dual, parts), given, none);
+      // 23 ranks: more than some slabs have planes for a window.
+      for (const int count : {2, 3, 23}) {
+        std::vector<Points> found(bodies_count);
+        as_ranks(count, [&](const Ranks& ranks) {
+          std::vector<FastGroup> mine = groups;
+          for (int g = 0; g < bodies_count; ++g) {
+            mine[std::size_t(g)].owner = g % count;
+            mine[std::size_t(g)].wanted = g % count == ranks.rank;
+          }
+          FastParts own;
+          const auto velocity = fast_velocity(plan_fast_sum(setting, bodies, mine, {}, dual, own, ranks), given, none);
+          for (int g = ranks.rank; g < bodies_count; g += count) found[std::size_t(g)] = velocity[std::size_t(g)];
+        });
+        INFO(count << " ranks, " << (cell ? "a cell" : "free space") << (dual ? ", both layers" : ""));
+        for (int g = 0; g < bodies_count; ++g)
+          CHECK((found[std::size_t(g)].array() == whole[std::size_t(g)].array()).all());
+      }
+    }
 }
