@@ -1,8 +1,8 @@
 #include "sim/suspension/gap.h"
 
 #include "sim/core/divided.h"
-#include "sim/layers/far_field.h"
 #include "sim/layers/near.h"
+#include "sim/layers/source_tiles.h"
 
 #include <fmt/format.h>
 
@@ -89,12 +89,14 @@ struct Surface {
   PointSampler sampler;
   const Basis& basis;
   Sources sources;
+  SourceTiles tiles;
 };
 
 Surface moved(Surface s, const Vec3& shift) {
   s.position.values.row(0) += std::sqrt(4 * std::numbers::pi) * shift.transpose();
   s.sampler = PointSampler(s.position);
   s.sources.points.rowwise() += shift.transpose();
+  s.tiles = moved(std::move(s.tiles), shift);
   s.sources.box = {s.sources.box.low + shift, s.sources.box.high + shift};
   return s;
 }
@@ -104,13 +106,12 @@ struct NearestSources {
   double distance;
   Eigen::Index first = 0, second = 0;
 };
-NearestSources nearest_sources(const Sources& a, const Sources& b) {
+NearestSources nearest_sources(const Surface& a, const Surface& b) {
   NearestSources nearest{std::numeric_limits<double>::infinity()};
-  for (Eigen::Index k = 0; k < a.points.rows(); ++k) {
-    const Vec3 x = a.points.row(k).transpose();
-    if (distance(b.box, x) >= nearest.distance) continue;
-    const auto [l, d] = nearest_source(b, x);
-    if (d < nearest.distance) nearest = {d, k, l};
+  for (Eigen::Index k = 0; k < a.sources.points.rows(); ++k) {
+    const Vec3 x = a.sources.points.row(k).transpose();
+    if (distance(b.sources.box, x) >= nearest.distance) continue;
+    if (const auto [l, d] = nearest_source(b.tiles, x, nearest.distance); l >= 0) nearest = {d, k, l};
   }
   return nearest;
 }
@@ -125,7 +126,7 @@ bool overlaps(const Sources& a, const Sources& b) {
 
 /// Of two surfaces: the nearest pair of source points, then Newton on the two spectral surfaces.
 Gap gap_between(const Surface& a, const Surface& b, int first, int second) {
-  const NearestSources nearest = nearest_sources(a.sources, b.sources);
+  const NearestSources nearest = nearest_sources(a, b);
   Gap gap{nearest.distance, first, second, false};
   const double spacing = b.sources.spacing[nearest.second];
   if (nearest.distance < 3 * std::max(a.sources.spacing[nearest.first], spacing)) {
@@ -160,8 +161,10 @@ Search search_among(Plans& plans, std::span<const Coefficients> positions, const
   search.surfaces.resize(n);
   parallel_for(n, [&](int i) {
     const Basis& basis = plans.basis(positions[i].order, smooth_order(positions[i].order));
+    Sources sources = make_sources(basis, positions[i]);
+    SourceTiles tiles = make_tiles(basis, sources);
     search.surfaces[i].emplace(
-        Surface{positions[i], PointSampler(positions[i]), basis, make_sources(basis, positions[i])});
+        Surface{positions[i], PointSampler(positions[i]), basis, std::move(sources), std::move(tiles)});
   });
   Box all{search.surfaces[0]->sources.box};
   for (const auto& surface : search.surfaces) {

@@ -2,6 +2,7 @@
 
 #include "sim/core/divided.h"
 #include "sim/layers/kernels.h"
+#include "sim/layers/source_tiles.h"
 
 #include <fmt/format.h>
 
@@ -55,6 +56,7 @@ struct NearSource {
   PointSampler surface;
   const RotationPlan& rotation;
   const NearRule& rule;
+  SourceTiles tiles;
 };
 
 /// Sorts the targets of a pair: those that need the fine grid, and those that need rows.
@@ -63,7 +65,7 @@ void fill(PairPlan& pair, const Interaction& w, const NearSource& source_surface
   const int j = pair.source;
   const Sources& s = w.sources[j];
   const Matrix& targets = w.far.groups[pair.target].points;
-  const auto& [position, surface, rotation, rule] = source_surface;
+  const auto& [position, surface, rotation, rule, tiles] = source_surface;
   const double reach = options.near_spacings * s.spacing.maxCoeff();
   const double coarse_reach = options.coarse_spacings * (*w.far.sources)[j].spacing.maxCoeff();
   for (int k = 0; k < int(targets.rows()); ++k) {
@@ -71,7 +73,7 @@ void fill(PairPlan& pair, const Interaction& w, const NearSource& source_surface
     const double to_box = distance(s.box, x);
     if (only_near ? to_box >= reach : coarse_reach > 0 && to_box >= coarse_reach) continue;
     if (options.near_rule && to_box < reach) {
-      const auto [source, away] = nearest_source(s, x);
+      const auto [source, away] = nearest_source(tiles, x);
       if (away < (options.near_spacings + 1) * s.spacing[source]) {
         const NearestPoint nearest = nearest_point(surface, x, grid_direction(*w.source_basis[j], source));
         if (nearest.inside)
@@ -179,8 +181,8 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
     if (!rules.contains(x.order)) rules.emplace(x.order, near_rule(x.order, near_order(options, x.order)));
   std::vector<NearSource> near;
   for (int i = 0; i < n; ++i)
-    near.push_back(
-        {positions[i], PointSampler(positions[i]), plans.rotation(positions[i].order), rules.at(positions[i].order)});
+    near.push_back({positions[i], PointSampler(positions[i]), plans.rotation(positions[i].order),
+                    rules.at(positions[i].order), make_tiles(*w.source_basis[i], w.sources[i])});
   divided_for(of_pairs, int(w.pairs.size()),
               [&](int k) { fill(w.pairs[k], w, near[w.pairs[k].source], options, only_near); });
   std::erase_if(w.pairs, [](const PairPlan& pair) { return pair.fine.empty() && pair.near.empty(); });

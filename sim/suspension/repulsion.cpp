@@ -1,8 +1,8 @@
 #include "sim/suspension/repulsion.h"
 
 #include "sim/core/divided.h"
-#include "sim/layers/far_field.h"
 #include "sim/layers/near.h"
+#include "sim/layers/source_tiles.h"
 
 #include <fmt/format.h>
 
@@ -22,6 +22,7 @@ struct Repeller {
   const Basis& basis;
   PointSampler surface;
   Sources sources;
+  SourceTiles tiles;
   double radius = 0;  ///< of the sphere of its area
 };
 
@@ -29,7 +30,8 @@ Repeller repeller(Plans& plans, const Coefficients& x) {
   const Basis& basis = plans.basis(x.order, x.order + x.order / 2);
   Sources sources = make_sources(basis, x);
   const double radius = std::sqrt(sources.area.sum() / (4 * std::numbers::pi));
-  return {basis, PointSampler(x), std::move(sources), radius};
+  SourceTiles tiles = make_tiles(basis, sources);
+  return {basis, PointSampler(x), std::move(sources), std::move(tiles), radius};
 }
 
 /// Another vesicle, or an image, that is near.
@@ -53,12 +55,13 @@ std::vector<std::vector<Neighbour>> neighbours(const std::vector<Repeller>& all,
 /// Adds what one neighbour does at the points of vesicle `target`.
 void repel(int target, const Neighbour& other, const Repeller& source, const Repulsion& repulsion, double reach,
            const Matrix& points, Matrix& traction) {
-  const double apart = source.sources.spacing.maxCoeff();
+  // The foot of a point lies less than a spacing beside the nearest source.
+  const double limit = std::hypot(reach, source.sources.spacing.maxCoeff());
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     const Vec3 x = points.row(k).transpose() - other.shift;  // the image as seen from where its vesicle is
     if (distance(source.sources.box, x) >= reach) continue;
-    const auto [nearest, away] = nearest_source(source.sources, x);
-    if (away * away >= reach * reach + apart * apart) continue;  // the foot lies less than a spacing beside that point
+    const auto [nearest, away] = nearest_source(source.tiles, x, limit);
+    if (nearest < 0) continue;
     const NearestPoint foot = nearest_point(source.surface, x, grid_direction(source.basis, nearest));
     if (foot.inside)
       throw std::domain_error(other.vesicle == target

@@ -1,3 +1,4 @@
+#include "sim/layers/source_tiles.h"
 #include "sim/suspension/gap.h"
 #include "sim/suspension/placements.h"
 #include "surfaces.h"
@@ -62,6 +63,25 @@ TEST_CASE("turning a field to the pole and back leaves it, and its value at the 
   CHECK((plan.from_pole(turned, theta, phi) - c.values).norm() < 1e-13);  // orthogonal: the transpose is the inverse
   const Vec3 s(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
   CHECK((sample_points({9, turned}, Vec3::UnitZ().transpose()) - sample_points(c, s.transpose())).norm() < 1e-13);
+}
+
+TEST_CASE("the nearest source is found in tiles as among all points, and none beyond a limit") {
+  const Coefficients x = test::potato(8);
+  const Basis basis(8, 23);
+  const Sources sources = make_sources(basis, x);
+  const SourceTiles tiles = make_tiles(basis, sources);
+  std::srand(3);
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 at = (k % 2 ? 0.9 : 3.0) * Vec3::Random();
+    const auto [source, distance] = nearest_source(sources, at);
+    const auto [found, near] = nearest_source(tiles, at);
+    CHECK(found == source);
+    CHECK(near == Approx(distance).epsilon(1e-14));
+    CHECK(nearest_source(tiles, at, 0.999 * distance).first == -1);
+    CHECK(nearest_source(tiles, at, 1.001 * distance).first == source);
+    const Vec3 by(5, -2, 1e3);
+    CHECK(nearest_source(moved(tiles, by), at + by).second == Approx(distance).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("the nearest point of an ellipsoid is found from outside and from inside") {
