@@ -1,5 +1,6 @@
 #include "sim/layers/near.h"
 
+#include "sim/core/lanes.h"
 #include "sim/layers/kernels.h"
 
 #include <array>
@@ -197,8 +198,26 @@ Vec3 near_velocity(const NearRule& rule, const RotationPlan& plan, const Coeffic
 }
 
 Vec3 apply_row(const Matrix& row, const Matrix& density) {
-  const Eigen::Matrix<double, 6, 3> k = row.transpose() * density;
-  return {k(0, 0) + k(1, 1) + k(2, 2), k(1, 0) + k(3, 1) + k(4, 2), k(2, 0) + k(4, 1) + k(5, 2)};
+  // One pass over the row, which is read once and far larger than what is made of it.
+  const Eigen::Index count = row.rows(), whole = count - count % lanes;
+  const double *k = row.data(), *f = density.data();
+  Lane sums[3] = {};
+  Vec3 v = Vec3::Zero();
+  for (Eigen::Index n = 0; n < whole; n += lanes) {
+    const Lane x = load_lane(f + n), y = load_lane(f + count + n), z = load_lane(f + 2 * count + n);
+    const Lane xy = load_lane(k + count + n), xz = load_lane(k + 2 * count + n), yz = load_lane(k + 4 * count + n);
+    sums[0] += load_lane(k + n) * x + xy * y + xz * z;
+    sums[1] += xy * x + load_lane(k + 3 * count + n) * y + yz * z;
+    sums[2] += xz * x + yz * y + load_lane(k + 5 * count + n) * z;
+  }
+  for (int d = 0; d < 3; ++d) v[d] = (sums[d][0] + sums[d][1]) + (sums[d][2] + sums[d][3]);
+  for (Eigen::Index n = whole; n < count; ++n) {
+    const double x = f[n], y = f[count + n], z = f[2 * count + n];
+    const double xy = k[count + n], xz = k[2 * count + n], yz = k[4 * count + n];
+    v += Vec3(k[n] * x + xy * y + xz * z, xy * x + k[3 * count + n] * y + yz * z,
+              xz * x + yz * y + k[5 * count + n] * z);
+  }
+  return v;
 }
 
 }  // namespace sim
