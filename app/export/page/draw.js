@@ -246,12 +246,20 @@ class Scene {
     const set = this.paint.use("outline", "", matrices);
     this.paint.distance(set, matrices);
     set.pair("u_sample", [2 / gl.drawingBufferWidth, 2 / gl.drawingBufferHeight]);
+    const slack = 1.5;  // samples
+    let count = 0;
+    page.vesicles.forEach((_, v) => {
+      const width = look.details[v].outline * look.outline;
+      count = rimTriangles(this.mesh, this.arrays.position, this.arrays.normal, v * this.mesh.vertices, matrices,
+                           2 * (width + step + slack) / gl.drawingBufferHeight, this.sorted, count);
+    });
     gl.bindVertexArray(this.hulls);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.sortedCorners);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.sorted.subarray(0, count), gl.DYNAMIC_DRAW);
     const hull = (more, share) => {
       set.number("u_more", more);
       set.number("u_alpha", share);
-      gl.drawElements(gl.TRIANGLES, this.sorted.length, gl.UNSIGNED_INT, 0);
+      gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
     };
     gl.cullFace(gl.FRONT);
     hull(-step, 1);
