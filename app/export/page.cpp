@@ -3,6 +3,7 @@
 #include "app/base/markup.h"
 #include "app/base/printable.h"
 #include "app/base/version.h"
+#include "app/export/json_members.h"
 #include "app/export/page_series.h"
 #include "app/pictures/flow_overlays.h"
 #include "app/pictures/instants.h"
@@ -54,31 +55,14 @@ std::string memory_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// A JSON object under construction.
-class Members {
- public:
-  void raw(std::string_view name, std::string_view json) {
-    text_ += fmt::format("{}{}:{}", text_.empty() ? "" : ",", json_text(name), json);
+/// With variables between U+E000 and U+E001: a page sets them in italics.
+std::string marked(const std::string& text) {
+  std::string all;
+  for (const render::TextRun& run : render::text_runs(text)) {
+    const std::string inner = run.italic ? "\ue000" + run.text + "\ue001" : run.text;
+    all += run.level == 0 ? inner : fmt::format("{}{{{}}}", run.level < 0 ? '_' : '^', inner);
   }
-  void text(std::string_view name, std::string_view value) { raw(name, json_text(value)); }
-  void number(std::string_view name, double value) { raw(name, fmt::format("{:.9g}", value)); }
-  void flag(std::string_view name, bool value) { raw(name, value ? "true" : "false"); }
-  template <class V>  // of GLM
-  void vector(std::string_view name, const V& v) {
-    raw(name, fmt::format("[{:.9g},{:.9g},{:.9g}]", v.x, v.y, v.z));
-  }
-  std::string whole() const { return '{' + text_ + '}'; }
-
- private:
-  std::string text_;
-};
-
-std::string list_of(const std::vector<std::string>& items) { return fmt::format("[{}]", fmt::join(items, ",")); }
-
-std::string texts_of(const std::vector<std::string>& texts) {
-  std::vector<std::string> items;
-  for (const std::string& text : texts) items.push_back(json_text(text));
-  return list_of(items);
+  return all;
 }
 
 /// The histories of one vesicle; all of them in the order of the page's bytes.
@@ -92,7 +76,7 @@ struct VesicleSeries {
 class Recorder {
  public:
   Recorder(const ViewPanel& panel, const sim::TrajectoryReader& trajectory)
-      : panel_(panel), arrows_(1e-4), radius_(panel.captions.scale_length) {
+      : panel_(panel), arrows_(1e-4), targets_(1e-4), radius_(panel.captions.scale_length) {
     const sim::State first = trajectory.state(0);
     int order = 1, label_order = 1;
     for (std::int64_t k = 0; k < trajectory.count(); k += std::max<std::int64_t>(1, trajectory.count() / 20))
@@ -136,7 +120,9 @@ class Recorder {
       reach_ =
           std::max(reach_, std::abs(camera.picture_place(summary.point(k)).x) * camera.half_width / camera.half_height);
     add_arrows(camera, summary);
-    times_.push_back(panel_.stamped ? captions_of(panel_, state.time).time : "");
+    const sim::Vec3 target = render::to_sim(camera.target) / radius_;
+    if (settings.scene.cell.size) targets_.add({target.data(), 3});
+    times_.push_back(panel_.stamped ? marked(captions_of(panel_, state.time).time) : "");
     ++frames_;
   }
 
@@ -168,7 +154,9 @@ class Recorder {
     page.raw("frames", fmt::format("{}", frames_));
     page.raw("times", texts_of(times_));
     page.raw("vesicles", list_of(vesicles));
+    page.flag("rests", rests_);
     page.raw("arrows", series(arrows_));
+    page.raw("targets", series(targets_));
     page.raw("arrow_counts", fmt::format("[{}]", fmt::join(arrow_counts_, ",")));
     page.text("bytes", base64(deflated(bytes)));
   }
@@ -192,10 +180,13 @@ class Recorder {
     const render::FlowArrows flow = arrows_of(panel_, summary);
     std::vector<double> numbers;
     const double longest = render::longest_arrow * camera.half_height / radius_;
-    if (flow.reference_speed > 0)
+    // A fluid at rest has beads instead, where the camera moves.
+    rests_ = flow.reference_speed <= 0;
+    if (!rests_ || camera.follows)
       for (Eigen::Index i = 0; i < flow.points.rows(); ++i) {
         const sim::Vec3 middle = (flow.points.row(i).transpose() - render::to_sim(camera.target)) / radius_;
-        const sim::Vec3 vector = flow.velocities.row(i).transpose() / flow.reference_speed * longest;
+        sim::Vec3 vector = sim::Vec3::Zero();
+        if (!rests_) vector = flow.velocities.row(i).transpose() / flow.reference_speed * longest;
         numbers.insert(numbers.end(), {middle[0], middle[1], middle[2], vector[0], vector[1], vector[2]});
       }
     arrow_counts_.push_back(numbers.size() / 6);
@@ -205,9 +196,10 @@ class Recorder {
   const ViewPanel& panel_;
   std::vector<VesicleSeries> all_;
   std::vector<double> radii_;
-  PageSeries arrows_;
+  PageSeries arrows_, targets_;
   std::vector<std::size_t> arrow_counts_;
   std::vector<std::string> times_;
+  bool rests_ = false;  ///< there is no background flow
   double radius_, reach_ = 0;
   std::size_t frames_ = 0;
   sim::Plans plans_;
@@ -231,6 +223,7 @@ void write_camera(Members& page, const ViewPanel& panel, double time) {
   camera.number("depth", framing.depth / radius);
   camera.number("aspect", framing.aspect);
   camera.flag("perspective", framing.perspective);
+  camera.flag("follows", framing.follows);
   page.raw("camera", camera.whole());
   std::vector<std::string> views;
   for (const render::CameraRow& row : render::cameras()) {
@@ -268,7 +261,7 @@ void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
 void write_shaders(Members& page, bool fades) {
   Members files, libraries;
   std::set<std::string> names;
-  for (const std::string program : {"ground", "body", "outline", "arrow"})
+  for (const std::string program : {"ground", "body", "outline", "arrow", "ribbon"})
     for (const std::string& file : {program + ".vert", program + ".frag"}) {
       const std::vector<std::string> before = render::shader_libraries(file);
       libraries.raw(file, texts_of(before));
@@ -296,6 +289,8 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.flag("dark", ground.dark());
   paint.number("depth_cue", cue);
   paint.vector("arrow", render::linear(render::inks_on(ground).arrow));
+  paint.vector("ring", static_cast<float>(render::end_on_shade) * render::vector_of(render::inks_on(ground).arrow));
+  paint.vector("flow_line", render::vector_of(render::inks_on(ground).flow_line));
   paint.vector("line_ink", render::line_ink);
   paint.vector("tracer_bright", render::linear(render::tracer_bright));
   paint.vector("tracer_dark", render::linear(render::tracer_dark));
@@ -303,6 +298,8 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.number("edge_step", render::edge_step);
   paint.number("arrow_thickness", render::arrow_thickness);
   paint.number("longest_arrow", render::longest_arrow);
+  paint.number("weakest_arrow", render::weakest_arrow);
+  paint.number("end_on_radius", render::end_on_radius);
   paint.vector("key_light", render::key_light);
   paint.number("occlusion", view.occlusion);
   paint.number("line_width", view.line_width);
@@ -310,6 +307,7 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.number("opacity", view.opacity);
   paint.number("sign_dot_spacing", render::SignDots::spacing);
   paint.number("sign_dot_least", render::SignDots::least);
+  paint.flag("full_detail", view.detail == "full");
   paint.flag("grid_lines", view.lines == "grid");
   page.raw("paint", paint.whole());
 }
@@ -318,7 +316,7 @@ void write_legend(Members& page, const ViewPanel& panel) {
   if (!panel.painting.field) return page.raw("legend", "null");
   const std::optional<render::Legend>& legend = panel.painting.legend;
   Members m;
-  m.text("label", legend->label);
+  m.text("label", marked(legend->label));
   std::string colours;
   for (const auto& entry : legend->colours) colours.append(entry.begin(), entry.end());
   m.text("colours", base64(colours));
@@ -375,9 +373,11 @@ std::string page_text(const sim::TrajectoryReader& trajectory, const Settings& s
   const std::int64_t frames = static_cast<std::int64_t>(frame_times(trajectory, settings.movie).size());
   Members page;
   page.text("title", title);
-  page.text("parameters", panel.captions.parameters);
+  page.text("parameters", marked(panel.captions.parameters));
   page.text("style", settings.view.style);
   page.number("seconds", static_cast<double>(std::max<std::int64_t>(frames - 1, 1)) / settings.movie.frame_rate);
+  if (const std::optional<sim::Vec3>& cell = settings.scene.cell.size)
+    page.vector("cell", sim::Vec3(*cell / 2 / panel.captions.scale_length));  // half its edges
   write_camera(page, panel, times.front());
   const double cue = render::depth_cue_of(panel.view, first.vesicles.size());
   write_paint(page, panel.view, cue);

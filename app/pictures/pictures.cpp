@@ -10,6 +10,7 @@
 #include "render/scene/cutaway.h"
 #include "render/scene/hidden.h"
 #include "render/scene/occlusion.h"
+#include "render/scene/surface.h"
 #include "sim/measures/diagnostics.h"
 #include "sim/membrane/cell.h"
 
@@ -49,9 +50,13 @@ std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const si
                           vesicle, field ? &*field : nullptr);
     body.colour = p.painting.bodies[v];
     if (!occluders.empty()) render::shade(body.mesh, v, sketches, occluders, camera, body.mesh.area_radius * pixels);
-    if (style.cut)
-      body.cut = p.view.cut == "common" ? render::make_cut_at(vesicle.position, p.view.cut_normal, plane)
-                                        : render::make_cut(vesicle.position, p.view.cut_normal, p.view.cut_offset);
+    if (!style.cut) continue;
+    if (!studio.sections) studio.sections.emplace(render::rim_latitudes);
+    const sim::Vec3 through = p.view.cut == "common" ? plane
+                                                     : sim::Vec3(render::volume_moments(vesicle.position).centroid +
+                                                                 p.view.cut_offset * p.view.cut_normal.normalized());
+    body.cut = render::make_cut(*studio.sections, studio.plans.rotation(vesicle.position.order), vesicle.position,
+                                p.view.cut_normal, through);
   }
   return bodies;
 }

@@ -7,7 +7,10 @@
 
 #include "render/draw/draw.h"
 #include "render/scene/detail.h"
+#include "render/scene/section.h"
 #include "sim/layers/plans.h"
+
+#include <optional>
 
 namespace app {
 
@@ -16,6 +19,7 @@ struct Studio {
   render::Renderer renderer;
   render::MeshLevels meshes;
   sim::Plans plans;
+  std::optional<render::SectionPlan> sections;  ///< of the style that opens membranes
   render::Font font = render::caption_font();
   Studio(const render::GlChoice&, const std::filesystem::path& shader_dir, int picture_height);
 };

@@ -127,6 +127,14 @@ void share_scale(const std::vector<ViewPanel*>& panels) {
   }
 }
 
+/// An arrow is the way of the fluid in one and the same time in all panels; the fastest fluid has the longest arrow.
+/// Their speeds are in lengths of the scene, and arrows are shares of the picture's height.
+void share_arrows(std::vector<ViewPanel>& panels) {
+  double rate = 0;
+  for (const ViewPanel& p : panels) rate = std::max(rate, p.arrow_speed / p.framing.half_height);
+  for (ViewPanel& p : panels) p.arrow_speed = rate * p.framing.half_height;
+}
+
 /// What else all frames of the panel share: room of the inset, speed of the longest arrow.
 void complete(ViewPanel& p, const SourceMeasures& m) {
   const PictureSource& source = p.source;
@@ -181,6 +189,7 @@ Production prepare_pictures(const std::vector<PictureSource>& sources, std::opti
   }
   for (std::size_t k = 0; k < production.panels.size(); ++k)
     complete(production.panels[k], measures[k / cameras.size()]);
+  share_arrows(production.panels);
   return production;
 }
 

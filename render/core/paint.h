@@ -15,6 +15,10 @@ inline constexpr double tracer_radius = 0.088;  ///< area radii
 inline constexpr double edge_step = 1.0 / 3;    ///< samples between the hulls of an outline
 /// Arrows of the flow: the longest, and the radius of all; half heights of the picture.
 inline constexpr double longest_arrow = 0.21, arrow_thickness = 0.009;
+inline constexpr double weakest_arrow = 0.10;  ///< of the longest; shorter ones are left out
+/// Along the line of sight an arrow is a blot: there a ring with a dot or a cross takes its place. Its radius is a
+/// share of the arrow's length, its colour one of the arrow's.
+inline constexpr double end_on_radius = 0.16, end_on_shade = 0.82;
 
 /// Towards the key light: x right, y up, z to the viewer; any length. Shaders know it by the line that follows.
 inline constexpr glm::dvec3 key_light{-0.45, 0.75, 0.85};

@@ -16,8 +16,6 @@
 namespace render {
 namespace {
 
-constexpr double weakest_arrow = 0.10;  // of the longest; shorter ones are left out
-
 void check(const ViewParameters& view) {
   if (view.size.size() != 2 || view.size[0] < 1 || view.size[1] < 1)
     throw std::invalid_argument("view.size needs a width and a height of at least 1 px");
@@ -139,12 +137,11 @@ void Renderer::draw_arrows(const Frame& frame) {
         flow.shown * beside * clear_of_bodies(bodies, place_of(middle - arrow / 2.0), place_of(middle + arrow / 2.0));
     if (shown <= 0) continue;
     if (!rests) {
-      // Along the line of sight an arrow is a blot: there a ring with a dot or a cross takes its place.
       const glm::dvec3 sight = camera.perspective ? camera.eye - middle : camera.eye - camera.target;
       const double along = glm::dot(arrow, sight) / (glm::length(arrow) * glm::length(sight));
       const double as_ring = glm::smoothstep(0.94, 0.96, std::abs(along));
       if (as_ring > 0)
-        end_on.push_back({middle, 0.16 * glm::length(arrow), along > 0, static_cast<float>(shown * as_ring)});
+        end_on.push_back({middle, end_on_radius * glm::length(arrow), along > 0, static_cast<float>(shown * as_ring)});
       if (as_ring >= 1) continue;
       starts.emplace_back(glm::vec3(camera.place(middle)), shown * (1 - as_ring));
       vectors.emplace_back(arrow / camera.half_height);

@@ -84,7 +84,7 @@ void Renderer::draw_end_on(const Frame& frame, const std::vector<EndOn>& arrows)
   p.use();
   p.set("u_core", -2.0F);
   p.set("u_half_width", half_width);
-  p.set("u_rim", 0.82F * vector_of(inks_on(ground_of(frame.view.background)).arrow));
+  p.set("u_rim", static_cast<float>(end_on_shade) * vector_of(inks_on(ground_of(frame.view.background)).arrow));
   start_blending();
   gl.DepthMask(GL_FALSE);
   gl.Disable(GL_CULL_FACE);

@@ -2,13 +2,19 @@
 #pragma once
 
 #include "render/scene/frame.h"
+#include "render/scene/section.h"
 
 namespace render {
 
-/// The plane has the given normal, of any length but 0, and lies `offset` from the vesicle's centre of mass along it.
-Cut make_cut(const sim::Coefficients& position, const sim::Vec3& normal, double offset);
+/// Of the rims: their corners stay below a tenth of a pixel.
+inline constexpr int rim_latitudes = 80;
 
-/// The plane has the given normal and goes through the point.
-Cut make_cut_at(const sim::Coefficients& position, const sim::Vec3& normal, const sim::Vec3& point);
+/// The plane has the given normal, of any length but 0, and goes through the point. plan: of rim_latitudes; rotation:
+/// of the surface's degree.
+Cut make_cut(const SectionPlan& plan, const sim::RotationPlan& rotation, const sim::Coefficients& position,
+             const sim::Vec3& normal, const sim::Vec3& point);
+
+/// Of one vesicle, `offset` from its centre of mass along the normal.
+Cut make_cut(const sim::Coefficients& position, const sim::Vec3& normal, double offset);
 
 }  // namespace render

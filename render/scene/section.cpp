@@ -1,15 +1,16 @@
 #include "render/scene/section.h"
 
-#include "render/scene/mesh.h"
 #include "render/scene/surface.h"
 
 #include "sim/sphere/basis.h"
 #include "sim/sphere/legendre.h"
+#include "sim/sphere/point_sampler.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <numbers>
+#include <unordered_map>
 
 namespace render {
 namespace {
@@ -19,14 +20,35 @@ using sim::Vec3;
 
 // The net's own symmetry planes must not fall into the cutting plane, where signs would be those of rounding errors:
 // it is turned by an angle that no vesicle or flow has.
-Matrix net_directions(const MeshPlan& plan) {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7391, Vec3(0.31, 0.77, -0.56).normalized()).toRotationMatrix();
-  Matrix s(plan.vertices(), 3);
-  for (Eigen::Index i = 0; i < s.rows(); ++i) {
-    const Vec3 p = to_sim(plan.parameters()[static_cast<std::size_t>(i)]);
-    s.row(i) = (turn * p.normalized()).transpose();
-  }
-  return s;
+Eigen::Matrix3d net_turn() {
+  return Eigen::AngleAxisd(0.7391, Vec3(0.31, 0.77, -0.56).normalized()).toRotationMatrix();
+}
+
+/// The turn as Rz(phi) Ry(theta) Rz(first).
+struct EulerAngles {
+  double phi, theta, first;
+};
+EulerAngles angles_of(const Eigen::Matrix3d& r) {
+  return {std::atan2(r(1, 2), r(0, 2)), std::acos(std::clamp(r(2, 2), -1.0, 1.0)), std::atan2(r(2, 1), -r(2, 0))};
+}
+
+/// Height of the surface above the plane at all vertices of the net: the field is turned instead of the net, whose
+/// points stay those of a grid.
+sim::Vector heights(const MeshPlan& net, const sim::RotationPlan& rotation, const sim::Coefficients& position,
+                    const CutPlane& plane) {
+  sim::Coefficients height{position.order, position.values * plane.normal};
+  height.values(0, 0) -= std::sqrt(4 * std::numbers::pi) * plane.origin.dot(plane.normal);
+  const EulerAngles turn = angles_of(net_turn());
+  height.values = rotation.to_pole(height.values, turn.theta, turn.phi);
+  const sim::Vector phi = net.phi().array() + turn.first;
+  const Matrix all = sim::sample_grid(height, net.theta(), phi).value;
+  const Eigen::Index rings = net.latitudes() - 1, columns = net.longitudes();
+  sim::Vector at(net.vertices());
+  for (Eigen::Index j = 0; j < columns; ++j)
+    at.segment(j * rings, rings) = all.col(0).segment(j * (rings + 2) + 1, rings);
+  at[columns * rings] = all(0, 0);
+  at[columns * rings + 1] = all(rings + 1, 0);
+  return at;
 }
 
 struct Net {
@@ -36,13 +58,14 @@ struct Net {
 
 Net crossing_edges(const MeshPlan& plan, const sim::Vector& height) {
   Net net;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> number;
-  const auto above = [&](std::uint32_t v) { return height[static_cast<Eigen::Index>(v)] >= 0; };
+  std::unordered_map<std::uint64_t, int> number;
+  std::vector<std::uint8_t> above;
+  for (const double h : height) above.push_back(h >= 0);
   const auto edge = [&](std::uint32_t a, std::uint32_t b) {
-    const auto key = std::minmax(a, b);
-    const auto [found, fresh] = number.try_emplace({key.first, key.second}, static_cast<int>(net.edges.size()));
+    const std::uint64_t key = static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+    const auto [found, fresh] = number.try_emplace(key, static_cast<int>(net.edges.size()));
     if (fresh) {
-      net.edges.push_back(above(a) ? std::pair{b, a} : std::pair{a, b});
+      net.edges.push_back(above[a] ? std::pair{b, a} : std::pair{a, b});
       net.next.push_back({-1, -1});
     }
     return found->second;
@@ -53,15 +76,14 @@ Net crossing_edges(const MeshPlan& plan, const sim::Vector& height) {
   };
   const std::span<const std::uint32_t> index = plan.indices();
   for (std::size_t t = 0; t < index.size(); t += 3) {
+    if (above[index[t]] == above[index[t + 1]] && above[index[t]] == above[index[t + 2]]) continue;
     int crossed[3], count = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = index[t + k], b = index[t + (k + 1) % 3];
-      if (above(a) != above(b)) crossed[count++] = edge(a, b);
+      if (above[a] != above[b]) crossed[count++] = edge(a, b);
     }
-    if (count == 2) {
-      join(crossed[0], crossed[1]);
-      join(crossed[1], crossed[0]);
-    }
+    join(crossed[0], crossed[1]);
+    join(crossed[1], crossed[0]);
   }
   return net;
 }
@@ -84,62 +106,63 @@ std::vector<std::vector<int>> loops_of(const Net& net) {
   return loops;
 }
 
-// Zero of the height along the arc between the ends of each edge: all edges at once, regula falsi (Illinois).
-Matrix zeros_on_edges(const sim::Coefficients& position, const CutPlane& plane, const Net& net, const Matrix& s,
-                      const sim::Vector& height) {
-  const auto count = static_cast<Eigen::Index>(net.edges.size());
-  sim::Vector a = sim::Vector::Zero(count), b = sim::Vector::Ones(count), fa(count), fb(count);
-  const auto ends = [&](Eigen::Index i) { return net.edges[static_cast<std::size_t>(i)]; };
-  for (Eigen::Index i = 0; i < count; ++i) {
-    fa[i] = height[ends(i).first];
-    fb[i] = height[ends(i).second];
-  }
-  const auto points_at = [&](const sim::Vector& t) {
-    Matrix p(count, 3);
-    for (Eigen::Index i = 0; i < count; ++i)
-      p.row(i) = ((1 - t[i]) * s.row(ends(i).first) + t[i] * s.row(ends(i).second)).normalized();
-    return p;
-  };
-  const double tolerance = 1e-13 * height.cwiseAbs().maxCoeff();
-  sim::Vector t(count), side = sim::Vector::Zero(count);
-  for (int round = 0; round < 40; ++round) {
-    for (Eigen::Index i = 0; i < count; ++i) t[i] = (a[i] * fb[i] - b[i] * fa[i]) / (fb[i] - fa[i]);
-    const sim::Vector f =
-        (sim::sample_points(position, points_at(t)).rowwise() - plane.origin.transpose()) * plane.normal;
-    if (f.cwiseAbs().maxCoeff() <= tolerance) break;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (std::abs(f[i]) <= tolerance) {  // done: stays where it is
-        a[i] = b[i] = t[i];
-        fa[i] = -1;
-        fb[i] = 1;
-      } else if (f[i] < 0) {
-        a[i] = t[i];
-        fa[i] = f[i];
-        if (side[i] < 0) fb[i] /= 2;
-        side[i] = -1;
-      } else {
-        b[i] = t[i];
-        fb[i] = f[i];
-        if (side[i] > 0) fa[i] /= 2;
-        side[i] = 1;
-      }
+/// Zero of the height on the arc from `below` to `above`, whose heights are fa < 0 <= fb: regula falsi (Illinois).
+Vec3 zero_on_arc(const sim::PointSampler& surface, const CutPlane& plane, const Vec3& below, const Vec3& above,
+                 double fa, double fb, double tolerance) {
+  double a = 0, b = 1;
+  Vec3 s;
+  for (int round = 0, side = 0; round < 40; ++round) {
+    const double t = (a * fb - b * fa) / (fb - fa);
+    s = ((1 - t) * below + t * above).normalized();
+    const double f = (surface.position(s) - plane.origin).dot(plane.normal);
+    if (std::abs(f) <= tolerance) break;
+    if (f < 0) {
+      a = t;
+      fa = f;
+      if (side < 0) fb /= 2;
+      side = -1;
+    } else {
+      b = t;
+      fb = f;
+      if (side > 0) fa /= 2;
+      side = 1;
     }
   }
-  return points_at(t);
+  return s;
 }
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 
+SectionPlan::SectionPlan(int latitudes) : net_(latitudes, 4 * ((latitudes + 1) / 2)) {
+  const Eigen::Matrix3d turn = net_turn();
+  for (const glm::vec3& s : net_.parameters()) directions_.push_back(turn * to_sim(s).normalized());
+}
+
 std::vector<ClosedCurve> cut(const sim::Coefficients& position, const CutPlane& plane, int latitudes) {
-  const MeshPlan plan(latitudes, 4 * ((latitudes + 1) / 2));
-  const Matrix s = net_directions(plan);
-  const sim::Vector height = (sim::sample_points(position, s).rowwise() - plane.origin.transpose()) * plane.normal;
-  const Net net = crossing_edges(plan, height);
+  return SectionPlan(latitudes).cut(position, plane, sim::RotationPlan(position.order));
+}
+
+std::vector<ClosedCurve> SectionPlan::cut(const sim::Coefficients& position, const CutPlane& plane,
+                                          const sim::RotationPlan& rotation) const {
+  const sim::Vector height = heights(net_, rotation, position, plane);
+  const Net net = crossing_edges(net_, height);
   if (net.edges.empty()) return {};
-  const Matrix parameters = zeros_on_edges(position, plane, net, s, height);
-  const SurfacePoints found = surface_points(position, parameters);
+  const sim::PointSampler surface(position);
+  const double tolerance = 1e-13 * height.cwiseAbs().maxCoeff();
+  Matrix parameters(net.edges.size(), 3);
+  SurfacePoints found{Matrix(net.edges.size(), 3), Matrix(net.edges.size(), 3)};
+  for (std::size_t k = 0; k < net.edges.size(); ++k) {
+    const auto [below, above] = net.edges[k];
+    const auto row = static_cast<Eigen::Index>(k);
+    const Vec3 s =
+        zero_on_arc(surface, plane, directions_[below], directions_[above], height[below], height[above], tolerance);
+    const sim::PointTangents x = surface.tangents(s);
+    parameters.row(row) = s.transpose();
+    found.position.row(row) = x.x.transpose();
+    found.normal.row(row) = x.a.cross(x.b).stableNormalized().transpose();
+  }
   const double size = height.maxCoeff() - height.minCoeff();
 
   std::vector<ClosedCurve> curves;

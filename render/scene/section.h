@@ -1,7 +1,10 @@
 // The intersection of a plane with a vesicle: closed curves on the spectral surface, with tangents.
 #pragma once
 
+#include "render/scene/mesh.h"
+
 #include "sim/core/types.h"
+#include "sim/sphere/rotation.h"
 
 #include <vector>
 
@@ -22,10 +25,22 @@ struct ClosedCurve {
   sim::Matrix directions;  ///< count x 3: parameters of the points on the unit sphere
 };
 
-/// All curves, longest first. The zero set of (x(s) - origin) . normal is traced on a net of `latitudes` x 2
-/// latitudes cells, which must be finer than the smallest feature of interest; each point is then moved along its
-/// edge of the net until it lies on plane and spectral surface to 1e-12 of the vesicle's size. Empty when the plane
-/// misses the vesicle.
+/// What sections of many surfaces share: a net of `latitudes` x 2 latitudes cells on the unit sphere, which must be
+/// finer than the smallest feature of interest. Immutable.
+class SectionPlan {
+ public:
+  explicit SectionPlan(int latitudes);
+  /// All curves, longest first. The zero set of (x(s) - origin) . normal is traced on the net; each point is then moved
+  /// along its edge of the net until it lies on plane and spectral surface to 1e-12 of the vesicle's size. Empty when
+  /// the plane misses the vesicle. rotation: of the surface's degree.
+  std::vector<ClosedCurve> cut(const sim::Coefficients& position, const CutPlane& plane,
+                               const sim::RotationPlan& rotation) const;
+
+ private:
+  MeshPlan net_;
+  std::vector<sim::Vec3> directions_;  ///< of its vertices
+};
+/// Of one surface.
 std::vector<ClosedCurve> cut(const sim::Coefficients& position, const CutPlane& plane, int latitudes = 48);
 
 /// The curve between two neighbouring points as a Bezier cubic: ends p0, p3, arms p1, p2.

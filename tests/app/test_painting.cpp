@@ -1,7 +1,9 @@
 // The range of a field that was not given follows the values that are shown.
+#include "app/pictures/flow_overlays.h"
 #include "app/pictures/flow_picture.h"
 #include "app/pictures/painting.h"
 #include "app/pictures/pictures.h"
+#include "app/pictures/production.h"
 #include "app/scene/scene_file.h"
 
 #include "sim/stepping/simulate.h"
@@ -82,6 +84,34 @@ field = "tension"
       CHECK(panel.painting.legend->colours == render::colour_table(render::find_colour_map("blue-red")));
     }
   }
+}
+
+TEST_CASE("side by side an arrow is the way of the fluid in one and the same time, however large the vesicles") {
+  const support::TemporaryFolder folder;
+  std::vector<sim::TrajectoryReader> readers;
+  std::vector<app::Settings> settings;
+  for (const auto& [rate, radius] : {std::pair{"1.0", "2.0"}, std::pair{"3.0", "1.0"}}) {
+    const std::string text =
+        std::string("[flow]\nkind = \"shear\"\nrate = ") + rate +
+        "\n[time]\nend = 0.1\nstep = 0.1\n[[vesicle]]\nshape = \"sphere\"\norder = 4\nradius = " + radius +
+        "\n[view]\nsize = [640, 360]\n";
+    settings.push_back(app::parse_scene(text, "s.toml", "."));
+    sim::SimulationOptions options;
+    options.trajectory = (folder / (std::string(rate) + ".h5")).string();
+    sim::simulate(settings.back().scene, options, {});
+    readers.emplace_back(options.trajectory);
+  }
+  const app::Production production = app::prepare_pictures({{readers[0], settings[0]}, {readers[1], settings[1]}});
+  std::vector<double> times;  // that an arrow lasts
+  double longest = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const app::ViewPanel& panel = production.panels[k];
+    const render::FlowArrows arrows = app::arrows_of(panel, render::summarize(readers[k].state(0)));
+    times.push_back(panel.framing.half_height / arrows.reference_speed);
+    longest = std::max(longest, arrows.velocities.rowwise().norm().maxCoeff() / arrows.reference_speed);
+  }
+  CHECK(times[0] == Approx(times[1]));
+  CHECK(longest == Approx(1));
 }
 
 TEST_CASE("a shared range is that of all movies of a command, for stills and for figures, too") {

@@ -10,7 +10,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 MODULES = ["sim", "render", "app"]
 # What the pictures may know of the simulation: values and how they are sampled, never operators or steppers.
-RENDER_SEES = {"sim/core", "sim/trajectory/trajectory.h", "sim/sphere/basis.h", "sim/sphere/legendre.h", "sim/surface/geometry.h"}
+RENDER_SEES = {"sim/core", "sim/trajectory/trajectory.h", "sim/sphere", "sim/surface/geometry.h"}
 HDF5_FILES = re.compile(r"sim/trajectory/")
 GL_FILES = re.compile(r"render/gl/context\w*\.(h|cpp)$")
 GL_WORDS = re.compile(r"\bOSMesa[A-Z]\w*|\begl[A-Z]\w*\s*\(|<EGL/|<GL/osmesa")

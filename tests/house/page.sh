@@ -9,18 +9,71 @@ browser=$(command -v chromium || command -v chromium-browser || command -v googl
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$program" simulate "$scene" --set time.end=2 --set time.save_every=1 --set vesicle.order=10 -q -o "$folder/t.h5"
-plain=(--set view.time_stamp=false --set view.caption=false --set view.scale_bar=false --set view.colour_bar=false
-       --set view.camera=three-quarter --set view.flow_arrows=true)
-"$program" export "$folder/t.h5" --html "$folder/page.html" "${plain[@]}" -q
-for style in opaque ghost field; do
-  "$program" render "$folder/t.h5" --time 2 --size 640x360 --style $style "${plain[@]}" -q -o "$folder/$style.png" \
-    --gl software
-  # The software OpenGL of the browser itself: what a machine without a screen has.
+nothing_over=(--set view.time_stamp=false --set view.caption=false --set view.scale_bar=false --set view.colour_bar=false)
+# The software OpenGL of the browser itself: what a machine without a screen has.
+browse() {
   timeout 100 "$browser" --headless=new --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
-    --user-data-dir="$folder/profile" --hide-scrollbars --window-size=640,360 --virtual-time-budget=5000 \
-    --screenshot="$folder/page-$style.png" "file://$folder/page.html#frame=2&style=$style&bare" 2>"$folder/log" ||
+    --user-data-dir="$folder/profile" --hide-scrollbars --virtual-time-budget=5000 "$@" 2>"$folder/log" ||
     { cat "$folder/log" >&2; exit 1; }
-  # Browsers average samples in sRGB, not in linear light: edges and thin lines are a shade darker. A line that is
-  # missing, a light that has moved or a vesicle half a pixel off is beyond these.
-  "$program" compare "$folder/$style.png" "$folder/page-$style.png" --channel 24 --share 0.02 --largest 255 --rmse 5
+}
+# Page and picture of the same settings: alike FILE WORD OPTIONS..., with the tolerances TOLERANCES.
+alike() {
+  local trajectory=$1 words=$2
+  shift 2
+  "$program" export "$trajectory" --html "$folder/page.html" "${nothing_over[@]}" "$@" -q
+  "$program" render "$trajectory" --time 2 --size 640x360 "${nothing_over[@]}" "$@" -q -o "$folder/own.png" --gl software
+  browse --window-size=640,360 --screenshot="$folder/page.png" "file://$folder/page.html#frame=2&bare$words"
+  "$program" compare "$folder/own.png" "$folder/page.png" --largest 255 --rmse 5 "${tolerances[@]}"
+}
+
+# Browsers average samples in sRGB, not in linear light: edges and thin lines are a shade darker. A line that is
+# missing, a light that has moved or a vesicle half a pixel off is beyond these.
+tolerances=(--channel 24 --share 0.02)
+for style in opaque ghost field; do
+  alike "$folder/t.h5" "&style=$style" --set view.camera=three-quarter --set view.style=$style
+done
+# Small vesicles, with fewer lines, among arrows, rings of arrows seen end-on, and the edges of a cell: an arrow has some
+# 150 pixels.
+tolerances=(--channel 48 --share 0.0003)
+alike "$folder/t.h5" "" --set view.zoom=0.3
+alike "$folder/t.h5" "" --set view.zoom=0.3 --set view.camera=along-flow
+"$program" simulate "$scene" --set time.end=2 --set time.save_every=1 --set vesicle.order=6 --set 'cell.size=[5, 5, 5]' -q \
+  -o "$folder/cell.h5"
+alike "$folder/cell.h5" "" --set view.zoom=0.5 --set view.camera=three-quarter
+
+# On a screen and on a telephone: everything is in the window, no text lies on another, and fingers can hit the controls.
+"$program" export "$folder/t.h5" --html "$folder/page.html" --set view.field=tension -q
+cat >"$folder/look.js" <<'EOF'
+<script>
+setTimeout(() => {
+  const faults = [], boxes = [], range = document.createRange();
+  if (document.body.dataset.drawn === undefined) faults.push("nothing was drawn");
+  const add = (name, element, text) => {
+    range.selectNodeContents(element);
+    const { left, top, right, bottom } = (text ? range : element).getBoundingClientRect();
+    if (right <= left || bottom <= top) return;
+    if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight) faults.push(`${name} is cut`);
+    for (const other of boxes)
+      if (left < other.right && other.left < right && top < other.bottom && other.top < bottom) faults.push(`${name} lies on ${other.name}`);
+    boxes.push({ name, left, top, right, bottom });
+  };
+  for (const id of ["time", "parameters", "title"]) add(id, document.getElementById(id), true);
+  add("scale", document.querySelector("#scale span"), true);
+  for (const [k, part] of document.querySelectorAll("#bar figcaption, #bar i, #bar li").entries()) add(`part ${k} of the bar`, part, part.tagName !== "I");
+  if (!document.getElementById("keys").hidden) add("keys", document.getElementById("keys"));
+  for (const control of document.querySelectorAll("button, select, #scrub")) {
+    add(control.id, control);
+    if (innerWidth < 500 && control.getBoundingClientRect().height < 44) faults.push(`${control.id} is too low for a finger`);
+  }
+  document.title = `faults: ${faults.join(", ") || "none"}`;
+}, 3000);
+</script>
+EOF
+cat "$folder/page.html" "$folder/look.js" >"$folder/looked.html"
+for words in style=opaque style=field style=opaque\&keys; do
+  for window in 1440,900/1 390,844/3 844,390/3; do
+    found=$(browse --window-size="${window%/*}" --force-device-scale-factor="${window#*/}" --dump-dom \
+      "file://$folder/looked.html#frame=2&$words" | grep -o '<title>[^<]*' | tail -1)
+    [ "$found" = "<title>faults: none" ] || { echo "$words at $window: $found" >&2; exit 1; }
+  done
 done

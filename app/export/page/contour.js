@@ -49,3 +49,46 @@ function contourDistances(mesh, position, normal, first, camera, unit, reach, ou
     mesh.neighbours(front[k], v => offer(v, piece));
   }
 }
+
+// Vertex indices of the triangles at the rim of a membrane, counted from `first`, into `out` from `at` on; as
+// rim_triangles() of the program. reach: half heights. Returns the end.
+function rimTriangles(mesh, position, normal, first, camera, reach, out, at) {
+  const narrowest = 0.3, frontEnough = 0.1, { vertices, indices } = mesh, { view, perspective } = camera;
+  const eye = new Float32Array(3 * vertices), facing = new Float32Array(vertices);
+  let farthest = 0;
+  for (let v = 0; v < vertices; ++v) {
+    const k = 3 * (first + v), x = position[k], y = position[k + 1], z = position[k + 2], nx = normal[k], ny = normal[k + 1], nz = normal[k + 2];
+    const ex = view[0] * x + view[4] * y + view[8] * z + view[12], ey = view[1] * x + view[5] * y + view[9] * z + view[13],
+          ez = view[2] * x + view[6] * y + view[10] * z + view[14];
+    const mx = view[0] * nx + view[4] * ny + view[8] * nz, my = view[1] * nx + view[5] * ny + view[9] * nz, mz = view[2] * nx + view[6] * ny + view[10] * nz;
+    eye[3 * v] = ex;
+    eye[3 * v + 1] = ey;
+    eye[3 * v + 2] = ez;
+    farthest = Math.max(farthest, -ez);
+    const toward = perspective ? -(mx * ex + my * ey + mz * ez) / (Math.sqrt(ex * ex + ey * ey + ez * ez) || 1) : mz;
+    facing[v] = toward / (Math.sqrt(mx * mx + my * my + mz * mz) || 1);
+  }
+  const scale = perspective ? farthest / (camera.distance / camera.unit) : 1;
+  const square = (array, a, b) => (array[b] - array[a]) ** 2 + (array[b + 1] - array[a + 1]) ** 2 + (array[b + 2] - array[a + 2]) ** 2;
+  for (let cosine = narrowest;;) {
+    let end = at, bent = 0;  // the square of the largest curvature
+    const bend = (a, b) => {
+      const length = square(eye, 3 * a, 3 * b);
+      if (length > 0) bent = Math.max(bent, square(normal, 3 * (first + a), 3 * (first + b)) / length);
+    };
+    for (let i = 0; i < indices.length; i += 3) {
+      const a = indices[i], b = indices[i + 1], c = indices[i + 2], fa = facing[a], fb = facing[b], fc = facing[c];
+      if (Math.max(fa, fb, fc) <= -cosine || Math.min(fa, fb, fc) >= frontEnough) continue;
+      out[end++] = first + a;
+      out[end++] = first + b;
+      out[end++] = first + c;
+      bend(a, b);
+      bend(b, c);
+    }
+    if (cosine > 1) return end;  // all back faces
+    const curvature = Math.sqrt(bent) + (perspective ? 1 / farthest : 0), inside = 1 - curvature * reach * scale;
+    const needed = inside > 0 ? Math.sqrt(1 - inside * inside) : 2;
+    if (needed <= cosine) return end;
+    cosine = needed;
+  }
+}

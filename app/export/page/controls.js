@@ -1,17 +1,18 @@
 // What the reader does, and the loop that answers it.
 
-// "R_{0}" with its subscripts and superscripts as elements; the text itself is never markup.
+// "R_{0}" with its subscripts, superscripts and variables, which stand between U+E000 and U+E001, as elements; the text
+// itself is never markup.
 function write(element, text) {
   element.replaceChildren();
-  for (const part of text.split(/([_^]\{[^}]*\})/)) {
-    const script = /^([_^])\{([^}]*)\}$/.exec(part);
-    if (!script) {
+  for (const part of text.split(/([_^]\{[^}]*\}|\ue000[^\ue001]*\ue001)/)) {
+    const script = /^([_^])\{([^}]*)\}$/.exec(part), variable = /^\ue000(.*)\ue001$/.exec(part);
+    if (!script && !variable) {
       element.append(part);
       continue;
     }
-    const small = document.createElement(script[1] === "_" ? "sub" : "sup");
-    small.textContent = script[2];
-    element.append(small);
+    const inner = document.createElement(variable ? "em" : script[1] === "_" ? "sub" : "sup");
+    write(inner, variable ? variable[1] : script[2]);
+    element.append(inner);
   }
 }
 
@@ -45,21 +46,19 @@ class Controls {
     document.body.classList.toggle("dark", page.paint.dark);
     if (!page.styles.some(s => s.name === this.style)) this.style = page.styles[0].name;
     if (!page.legend) return;
-    const picture = element.bar.querySelector("canvas").getContext("2d"), colours = bytesOf(page.legend.colours);
-    for (let k = 0; k < 256; ++k) {
-      picture.fillStyle = `rgb(${colours[3 * k]} ${colours[3 * k + 1]} ${colours[3 * k + 2]})`;
-      picture.fillRect(0, 255 - k, 1, 1);
-    }
+    const colours = bytesOf(page.legend.colours);
+    const stops = Array.from({ length: 256 }, (_, k) => `rgb(${colours[3 * k]} ${colours[3 * k + 1]} ${colours[3 * k + 2]})`);
+    element.bar.style.setProperty("--colours", stops.join());
     write(element.bar.querySelector("figcaption"), page.legend.label);
     page.legend.ticks.forEach((share, k) => {
       const item = document.createElement("li");
-      item.style.bottom = `${100 * share}%`;
+      item.style.setProperty("--at", `${100 * share}%`);
       write(item, page.legend.texts[k]);
       element.bar.querySelector("ol").append(item);
     });
   }
 
-  // page.html#frame=12&style=ghost&view=along-flow&turn=30,10&zoom=2&play=0&bare
+  // page.html#frame=12&style=ghost&view=along-flow&turn=30,10&zoom=2&play=0&bare&keys
   readAddress() {
     const words = new URLSearchParams(location.hash.slice(1)), number = name => Number.parseFloat(words.get(name));
     if (number("frame") >= 0) this.time = Math.min(number("frame"), this.last);
@@ -69,8 +68,14 @@ class Controls {
     if (Number.isFinite(right) && Number.isFinite(up)) this.camera.turn(right * Math.PI / 180, up * Math.PI / 180);
     if (number("zoom") > 0) this.camera.magnify(number("zoom"));
     document.body.classList.toggle("bare", words.has("bare"));
+    this.help(words.has("keys"));
     const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.play(this.last > 0 && (words.has("play") ? words.get("play") !== "0" : !words.has("frame") && !calm));
+  }
+
+  help(on) {
+    this.element.keys.hidden = !on;
+    this.element.help.setAttribute("aria-expanded", String(on));
   }
 
   look(name) {
@@ -117,10 +122,7 @@ class Controls {
     };
     element.style.onchange = () => this.paint(element.style.value);
     element.view.onchange = () => this.look(element.view.value);
-    element.help.onclick = () => {
-      element.keys.hidden = !element.keys.hidden;
-      element.help.setAttribute("aria-expanded", String(!element.keys.hidden));
-    };
+    element.help.onclick = () => this.help(element.keys.hidden);
     addEventListener("resize", () => this.dirty = true);
     canvas.addEventListener("webglcontextlost", event => {
       event.preventDefault();
@@ -232,6 +234,17 @@ class Controls {
     this.dirty = false;
   }
 
+  // Boxes of what lies over the picture, CSS pixels; of texts only what is written.
+  overlays() {
+    const { element } = this, boxes = [element.bar.getBoundingClientRect(), document.querySelector("footer").getBoundingClientRect()];
+    const range = document.createRange();
+    for (const text of [element.time, element.parameters, element.title, element.scale, element.bar.querySelector("figcaption"), element.bar.querySelector("ol")]) {
+      range.selectNodeContents(text);
+      boxes.push(range.getBoundingClientRect());
+    }
+    return boxes.filter(box => box.width > 0 && box.height > 0);
+  }
+
   draw() {
     const { element, page, scene, camera } = this, size = this.size(), canvas = element.picture;
     const width = Math.round(size.width * size.scale), height = Math.round(size.height * size.scale);
@@ -241,14 +254,14 @@ class Controls {
     }
     if (this.evaluated !== this.time) scene.evaluate(this.time);
     this.evaluated = this.time;
-    scene.draw(this.style, camera, size);
+    const radius = size.height / 2 / camera.matrices(size).unit;
+    element.scale.style.visibility = radius > 8 && radius < 0.6 * size.width ? "" : "hidden";
+    element.scale.querySelector("i").style.width = `${radius}px`;
     write(element.time, page.times[Math.round(this.time)]);
     element.scrub.value = this.time;
     element.style.value = this.style;
     element.bar.hidden = !page.styles.find(s => s.name === this.style).field;
-    const radius = size.height / 2 / camera.matrices(size).unit;
-    element.scale.style.visibility = radius > 8 && radius < 0.6 * size.width ? "" : "hidden";
-    element.scale.querySelector("i").style.width = `${radius}px`;
+    scene.draw(this.style, camera, size, this.overlays());
     document.body.dataset.drawn = this.time;
   }
 
@@ -270,8 +283,8 @@ function complain(error) {
 async function open() {
   const page = JSON.parse(document.getElementById("data").textContent);
   const reader = new SeriesReader(await inflated(bytesOf(page.bytes)), page.frames);
-  const vesicles = page.vesicles.map(v => ({ position: reader.next(v.position), labels: reader.next(v.labels),
-                                             tracers: reader.next(v.tracers), field: reader.next(v.field) }));
-  new Controls(page, { vesicles, arrows: reader.next(page.arrows) });
+  const vesicles = page.vesicles.map(v => ({ position: reader.next(v.position, 3), labels: reader.next(v.labels, 3),
+                                             tracers: reader.next(v.tracers, 3), field: reader.next(v.field, 1) }));
+  new Controls(page, { vesicles, arrows: reader.next(page.arrows, 6, 6 * Math.max(...page.arrow_counts)), targets: reader.next(page.targets, 3, 3) });
 }
 open().catch(complain);

@@ -20,7 +20,7 @@ class Scene {
     this.tracers = page.vesicles.map(() => []);
     this.nothing = gl.createVertexArray();
     this.makeBodies();
-    this.makeArrows();
+    this.surroundings = new Surroundings(gl, page, data, this.paint);
   }
 
   buffer(values) {
@@ -70,26 +70,11 @@ class Scene {
   fill(name, valueOf) {
     const { mesh, arrays, page } = this, array = arrays[name];
     page.vesicles.forEach((vesicle, v) => {
-      const value = valueOf(vesicle), size = value.length;
+      const value = valueOf(vesicle, v), size = value.length;
       for (let k = v * mesh.vertices * size, end = k + mesh.vertices * size; k < end; k += size)
         for (let c = 0; c < size; ++c) array[k + c] = value[c];
     });
     this.refill(this.buffers[name], array);
-  }
-
-  makeArrows() {
-    const { gl, page } = this, numbers = new Float32Array(bytesOf(page.arrow_shape).buffer), half = numbers.length / 2;
-    const most = Math.max(1, ...page.arrow_counts);
-    const arrows = { array: gl.createVertexArray(), vertices: half / 3, starts: new Float32Array(4 * most), vectors: new Float32Array(3 * most) };
-    gl.bindVertexArray(arrows.array);
-    this.attribute(this.buffer(numbers.subarray(0, half)), 0, 3);
-    this.attribute(this.buffer(numbers.subarray(half)), 1, 3);
-    arrows.startBuffer = this.buffer(arrows.starts);
-    arrows.vectorBuffer = this.buffer(arrows.vectors);
-    this.attribute(arrows.startBuffer, 2, 4, 0, 1);
-    this.attribute(arrows.vectorBuffer, 3, 3, 0, 1);
-    gl.bindVertexArray(null);
-    this.arrows = arrows;
   }
 
   // Evaluates the membranes at a time counted in frames.
@@ -133,12 +118,13 @@ class Scene {
     for (const name of ["position", "normal", "label", "scalar"]) this.refill(this.buffers[name], arrays[name]);
   }
 
-  draw(styleName, camera, size) {
+  draw(styleName, camera, size, overlays) {
     const { gl, page } = this, style = page.styles.find(s => s.name === styleName) || page.styles[0];
     const matrices = camera.matrices(size), height = size.height / matrices.fit;
     // px of the page at a height of 1080 in samples
     const samples = (px, least) => size.scale * Math.max(px * height / 1080, Math.min(px, least));
-    const look = { style, matrices, axes: camera.axes, samples, size, height, line: samples(page.paint.line_width / 2, 0.42), outline: samples(page.paint.outline_width, 1) };
+    const details = page.vesicles.map((vesicle, v) => this.detailOf(v, matrices, size.height, height));
+    const look = { style, details, overlays, matrices, axes: camera.axes, samples, size, height, line: samples(page.paint.line_width / 2, 0.42), outline: samples(page.paint.outline_width, 1) };
     gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.CULL_FACE);
@@ -149,35 +135,10 @@ class Scene {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.enable(gl.DEPTH_TEST);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    this.drawArrows(look, camera);
+    this.surroundings.draw(look, camera, Math.round(this.time), this.shadows(matrices));
     this.drawBodies(look);
     if (!style.see_through && page.paint.outline_width > 0) this.drawOutlines(look);
     gl.bindVertexArray(null);
-  }
-
-  drawArrows({ matrices }, camera) {
-    const { gl, page, data, arrows } = this, frame = Math.round(this.time), count = page.arrow_counts[frame];
-    const { back } = camera.home.axes, leading = [0, 1, 2].reduce((best, k) => Math.abs(back[k]) > Math.abs(back[best]) ? k : best, 0);
-    const facing = smoothstep(0.2, 0.45, Math.abs(camera.axes.back[leading]));
-    if (count === 0 || facing === 0) return;
-    const shadows = this.shadows(matrices);
-    for (let k = 0; k < count; ++k) {
-      const at = n => data.arrows.values[(6 * k + n) * page.frames + frame];
-      const middle = [at(0), at(1), at(2)], vector = [at(3), at(4), at(5)];
-      const long = Math.hypot(...vector) >= 0.1 * page.paint.longest_arrow * page.camera.half_height;
-      const tail = placeOf(matrices, combined([1, middle], [-0.5, vector])), tip = placeOf(matrices, combined([1, middle], [0.5, vector]));
-      arrows.starts.set([...middle, long ? facing * clearOf(shadows, tail, tip) : 0], 4 * k);
-      arrows.vectors.set(vector, 3 * k);
-    }
-    this.refill(arrows.startBuffer, arrows.starts);
-    this.refill(arrows.vectorBuffer, arrows.vectors);
-    const set = this.paint.use("arrow", "", matrices);
-    this.paint.ground(set);
-    set.vector("u_colour", page.paint.arrow);
-    set.number("u_thickness", page.paint.arrow_thickness * page.camera.half_height);
-    gl.bindVertexArray(arrows.array);
-    gl.drawArraysInstanced(gl.TRIANGLES, 0, arrows.vertices, count);
-    gl.clear(gl.DEPTH_BUFFER_BIT);  // they stand behind everything
   }
 
   // Some points of the membranes as the picture shows them.
@@ -188,9 +149,23 @@ class Scene {
     return places;
   }
 
+  // What is painted on a vesicle of this size, as detail_of() of the program: weights of all lines, of the few in their
+  // place, of the dots, and of the width of the contour. pictureHeight: the movie's in this window.
+  detailOf(v, { view, unit, distance, perspective }, height, pictureHeight) {
+    const { page, mesh, arrays } = this, { line_width, outline_width, full_detail, tracer_radius } = page.paint;
+    if (full_detail) return { lines: 1, fewLines: 0, tracers: 1, outline: 1 };
+    const poles = 3 * ((v + 1) * mesh.vertices - 2), middle = [0, 1, 2].map(k => (arrays.position[poles + k] + arrays.position[poles + 3 + k]) / 2);
+    const near = perspective ? distance / unit / Math.max(-eyePlace({ view }, middle)[2], 0.02 * distance / unit) : 1;
+    const radius = page.vesicles[v].radius * near * height / (2 * unit);
+    const spacing = Math.PI / 12 * radius / Math.max(line_width * pictureHeight / 1080, Math.min(line_width, 0.84), 1e-3);
+    const width = outline_width * pictureHeight / 1080;
+    return { lines: smoothstep(4.5, 7.5, spacing), fewLines: smoothstep(1.8, 3.2, spacing), tracers: smoothstep(1.6, 2.8, tracer_radius * radius),
+             outline: width > 0 ? Math.min(Math.max(radius / (20 * width), 0.45), 1) : 1 };
+  }
+
   // What the vertices carry of the vesicles, the style and the camera.
   prepare(look) {
-    const { style, matrices } = look, { page, arrays, mesh } = this;
+    const { style, matrices, details } = look, { page, arrays, mesh } = this;
     if (style.occluded) this.lightUp(look);
     if (style.see_through && page.paint.outline_width > 0) {
       page.vesicles.forEach((_, v) => contourDistances(mesh, arrays.position, arrays.normal, v * mesh.vertices, matrices,
@@ -198,12 +173,13 @@ class Scene {
       this.refill(this.buffers.edge, arrays.edge);
     }
     if (this.prepared !== style) {
-      this.fill("paint", vesicle => [...(style.own_colour ? vesicle.colour : [1, 1, 1]), 1]);
       this.fill("contour", vesicle => style.see_through ? vesicle.ghost_contour : vesicle.contour);
       this.prepared = style;
     }
+    this.fill("paint", (vesicle, v) => [...(style.own_colour ? vesicle.colour : [1, 1, 1]), details[v].outline]);
+    if (style.tracers || look.sparse)
+      this.fill("detail", (vesicle, v) => [details[v].lines, details[v].fewLines, page.paint.tracer_radius * vesicle.radius / matrices.unit, details[v].tracers]);
     if (!style.tracers) return;
-    this.fill("detail", vesicle => [1, 0, page.paint.tracer_radius * vesicle.radius / matrices.unit, 1]);
     this.tracers.forEach((tracers, v) => {
       const places = tracers.map(tracer => [...eyePlace(matrices, tracer.point), tracer.bright ? 1 : 0]), none = [0, 0, 0, -1];
       for (let k = v * mesh.vertices; k < (v + 1) * mesh.vertices; ++k) {
@@ -230,8 +206,9 @@ class Scene {
 
   drawBodies(look) {
     const { gl, page, mesh, arrays } = this, { style, matrices, height } = look;
+    look.sparse = style.defines.includes("#define GRID") && look.details.some(d => d.lines < 1);
     this.prepare(look);
-    const set = this.paint.use("body", style.defines, matrices);
+    const set = this.paint.use("body", style.defines + (look.sparse ? "#define SPARSE\n" : ""), matrices);
     this.paint.distance(set, matrices);
     set.vector("u_line_colour", page.paint.line_ink);
     set.number("u_contour_width", look.outline);
@@ -265,16 +242,24 @@ class Scene {
 
   drawOutlines(look) {
     const { gl, page } = this, { matrices } = look, step = page.paint.edge_step;
-    this.fill("outline", vesicle => [...vesicle.contour, look.outline]);
+    this.fill("outline", (vesicle, v) => [...vesicle.contour, look.details[v].outline * look.outline]);
     const set = this.paint.use("outline", "", matrices);
     this.paint.distance(set, matrices);
     set.pair("u_sample", [2 / gl.drawingBufferWidth, 2 / gl.drawingBufferHeight]);
+    const slack = 1.5;  // samples
+    let count = 0;
+    page.vesicles.forEach((_, v) => {
+      const width = look.details[v].outline * look.outline;
+      count = rimTriangles(this.mesh, this.arrays.position, this.arrays.normal, v * this.mesh.vertices, matrices,
+                           2 * (width + step + slack) / gl.drawingBufferHeight, this.sorted, count);
+    });
     gl.bindVertexArray(this.hulls);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.sortedCorners);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.sorted.subarray(0, count), gl.DYNAMIC_DRAW);
     const hull = (more, share) => {
       set.number("u_more", more);
       set.number("u_alpha", share);
-      gl.drawElements(gl.TRIANGLES, this.sorted.length, gl.UNSIGNED_INT, 0);
+      gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
     };
     gl.cullFace(gl.FRONT);
     hull(-step, 1);
@@ -295,18 +280,6 @@ function smoothstep(low, high, x) {
 
 function eyePlace({ view }, p) {
   return [0, 1, 2].map(r => view[r] * p[0] + view[4 + r] * p[1] + view[8 + r] * p[2] + view[12 + r]);
-}
-
-// 0 when the segment touches a membrane's shadow, 1 when it is well away.
-function clearOf(shadows, tail, tip) {
-  const near = 0.03, far = 0.055, along = [tip[0] - tail[0], tip[1] - tail[1]];
-  const length2 = Math.max(along[0] ** 2 + along[1] ** 2, 1e-12);
-  let nearest2 = far * far;
-  for (const [x, y] of shadows) {
-    const u = Math.min(Math.max(((x - tail[0]) * along[0] + (y - tail[1]) * along[1]) / length2, 0), 1);
-    nearest2 = Math.min(nearest2, (x - tail[0] - u * along[0]) ** 2 + (y - tail[1] - u * along[1]) ** 2);
-  }
-  return smoothstep(near, far, Math.sqrt(nearest2));
 }
 
 // Of the initial direction of tracer k: +x -x +y -y +z -z, then the corners of a cube; is x + y + z > 0?

@@ -29,8 +29,9 @@ class SeriesReader {
     return value % 2 === 0 ? value / 2 : -(value + 1) / 2;
   }
 
-  next([rows, quantum]) {
-    const values = new Float32Array(rows * this.frames);
+  // Rows of zeros at the end are not in the page: they are added up to a multiple of `width`, and `least` at least.
+  next([rows, quantum], width, least = 0) {
+    const all = Math.max(width * Math.ceil(rows / width), least), values = new Float32Array(all * this.frames);
     for (let row = 0; row < rows; ++row) {
       const differences = this.bytes[this.at++];
       let last = 0, before = 0;
@@ -42,7 +43,7 @@ class SeriesReader {
         last = now;
       }
     }
-    return { rows, frames: this.frames, values };
+    return { rows: all, frames: this.frames, values };
   }
 }
 
