@@ -468,6 +468,7 @@ struct PlacementParameters {
   std::optional<double> radius;  ///< tube
   double jitter = 0;             ///< lattice: share of its spacing that a centre may move
   std::optional<double> gap;     ///< least distance between two membranes
+  double size_spread = 0;        ///< standard deviation of the radii over their mean
   std::string orientation = "as-given";
   int seed = 1;
   Vec3 center = Vec3::Zero();
@@ -508,11 +509,18 @@ void visit(P& p, V&& v) {
               .when_absent = "0.05 R0 of the vesicle",
               .computed = true},
     p.gap);
+  v(Parameter{.name = "size_spread",
+              .unit = "",
+              .meaning = "standard deviation of the copies' radii over their mean, which is that of the vesicle; "
+                         "log-normal",
+              .minimum = 0,
+              .maximum = 1},
+    p.size_spread);
   v(Parameter{.name = "orientation", .unit = "", .meaning = "axis of each copy", .choices = orientation_names},
     p.orientation);
   v(Parameter{.name = "seed",
               .unit = "",
-              .meaning = "of the random numbers; the same seed gives the same places",
+              .meaning = "of the random numbers; the same seed gives the same places and sizes",
               .minimum = 0},
     p.seed);
   v(Parameter{.name = "center", .unit = "length", .meaning = "centre of the box or tube"}, p.center);

@@ -45,9 +45,11 @@ struct Contact {
 struct Pack {
   const std::vector<SupportShape>& shapes;
   const PackingRoom& room;
-  double slack;  ///< what chords may hide
+  double slack;  ///< what chords of a body of size 1 may hide
 
   const SupportShape& shape(const PackedBody& b) const { return shapes[static_cast<std::size_t>(b.shape)]; }
+  double reach(const PackedBody& b) const { return b.size * shape(b).reach(); }
+  Vec3 farthest(const PackedBody& b, const Vec3& n) const { return b.size * shape(b).farthest(n, b.axis); }
 
   /// Improves n: a step along the part of the line between the points that is across n. Radii of curvature bound how
   /// fast that changes; the step is that of the largest likely ones, so that it climbs.
@@ -57,7 +59,7 @@ struct Pack {
     Vec3 n = c.n;
     double best = -1e300, share = 1;
     for (int k = 0; k < steps; ++k) {
-      const Vec3 p = shape(a).farthest(n, a.axis), q = shape(b).farthest(-n, b.axis);
+      const Vec3 p = farthest(a, n), q = farthest(b, -n);
       const Vec3 line = between + q - p;
       const double apart = n.dot(line);
       if (apart > best) {
@@ -71,22 +73,22 @@ struct Pack {
       }
       const Vec3 rest = between + c.at_second - c.at_first, across = rest - c.n.dot(rest) * c.n;
       if (across.norm() < 1e-4 * room.radius) break;
-      n = (c.n + share * across / (shape(a).reach() + shape(b).reach() + std::max(0.0, c.apart))).normalized();
+      n = (c.n + share * across / (reach(a) + reach(b) + std::max(0.0, c.apart))).normalized();
     }
-    c.apart -= slack;
+    c.apart -= slack * (a.size + b.size);
   }
 
-  std::vector<Contact> contacts(const std::vector<PackedBody>& bodies, double reach) const {
+  std::vector<Contact> contacts(const std::vector<PackedBody>& bodies, double within) const {
     std::vector<Box> boxes;
     for (const PackedBody& b : bodies) {
-      const Vec3 half = Vec3::Constant(shape(b).reach());
+      const Vec3 half = Vec3::Constant(reach(b));
       boxes.push_back({b.centre - half, b.centre + half});
     }
     const CellSides sides = room.cell ? CellSides(Eigen::Matrix3d(room.cell->asDiagonal())) : CellSides();
     std::vector<Contact> all;
-    for (const ImagePair& p : near_images(boxes, reach, sides)) {
+    for (const ImagePair& p : near_images(boxes, within, sides)) {
       const auto first = static_cast<std::size_t>(p.first), second = static_cast<std::size_t>(p.second);
-      const double far = shape(bodies[first]).reach() + shape(bodies[second]).reach() + reach;
+      const double far = reach(bodies[first]) + reach(bodies[second]) + within;
       const Vec3 shift = p.shift(sides);
       if (p.first == p.second && shift.isZero()) continue;
       if ((bodies[second].centre + shift - bodies[first].centre).norm() > far) continue;
@@ -166,7 +168,7 @@ double move_apart(std::vector<PackedBody>& bodies, const std::vector<SupportShap
                   int rounds) {
   double error = 0;
   for (const SupportShape& s : shapes) error = std::max(error, s.error());
-  const Pack pack{shapes, room, 2 * error};
+  const Pack pack{shapes, room, error};
   // Heavy balls on springs that are a little longer than the gap, so that the gap is reached and not only approached.
   constexpr double pull = 0.15, memory = 0.8, longer = 0.03, most = 0.1, margin = 0.3;
   constexpr int kept = 8, first_steps = 12, steps = 2, sure_steps = 60;
@@ -197,8 +199,10 @@ double move_apart(std::vector<PackedBody>& bodies, const std::vector<SupportShap
     if (round == rounds) break;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       PackedBody& b = bodies[k];
-      speed[k] = memory * speed[k] + pull * force[k];
-      spin[k] = memory * spin[k] + pull / (room.radius * room.radius) * torque[k];
+      // A large body has as many more neighbours as it has surface.
+      const double mass = std::max(1.0, b.size * b.size), arm = room.radius * b.size;
+      speed[k] = memory * speed[k] + pull / mass * force[k];
+      spin[k] = memory * spin[k] + pull / (mass * arm * arm) * torque[k];
       const double fast = speed[k].norm() / (most * room.radius), whirl = spin[k].norm() / most;
       if (fast > 1) speed[k] /= fast;
       if (whirl > 1) spin[k] /= whirl;

@@ -36,14 +36,15 @@ class SupportShape {
 bool is_round(const Coefficients& surface);
 
 struct PackedBody {
-  int shape = 0;  ///< number of its SupportShape
+  int shape = 0;    ///< number of its SupportShape
+  double size = 1;  ///< its lengths over those of that shape
   Vec3 centre = Vec3::Zero();
   Vec3 axis = Vec3::UnitZ();
 };
 
 struct PackingRoom {
   double gap = 0;
-  double radius = 1;         ///< typical size of a body, length
+  double radius = 1;         ///< of a body of size 1, length
   std::optional<Vec3> cell;  ///< sides of a periodic cell; else centres stay within `half` of the origin
   Vec3 half = Vec3::Zero();
   bool turning = true;         ///< else bodies keep their axes

@@ -191,6 +191,8 @@ TEST_CASE("what two tables say together is checked before the run", "[scene]") {
   CHECK_THAT(error_of(good + "[numerics]\nlabel_order = 1\n"), Contains("s.toml:16:15") && Contains("at least 4"));
   CHECK_THAT(error_of(good + "[placement]\nkind = \"file\"\nfile = \"c.txt\"\nseed = 3\n"),
              Contains("s.toml:18:1") && Contains("not of 'file'"));
+  CHECK_THAT(error_of(good + "[placement]\nkind = \"file\"\nfile = \"c.txt\"\nsize_spread = 0.1\n"),
+             Contains("s.toml:18:1") && Contains("'size_spread' is a key of placement 'lattice', 'box', 'tube'"));
 }
 
 TEST_CASE("overrides change any key, and their errors name them", "[scene]") {
