@@ -1,5 +1,6 @@
 #include "sim/layers/layer_plan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -26,7 +27,15 @@ LayerPotentials::Plan::Plan(int order, int source_order)
     }
     singular_weight.push_back(source.weight[k] * std::numbers::pi / (s + 1) * sum * 2 * std::sin(t / 2) / std::sin(t));
   }
-  for (int tile = 0; tile * lanes < target.nlon; ++tile) turns.push_back(turn_of(tile));
+  for (int first = 0; first < target.nlon; first += lanes) {
+    turns.push_back(turn_of(first));
+    opposite_turns.push_back(turn_of(first + target.nlon / 2));
+  }
+  for (int i = 0; i < target.half; ++i) {
+    const int longitudes = target.mirror(i) == i ? target.nlon / 2 : target.nlon;  // the equator is its own antipode
+    for (int first = 0; first < longitudes; first += lanes)
+      tiles.push_back({i, first / lanes, std::min(lanes, longitudes - first)});
+  }
   // W_i: the basis at points turned by Ry(theta_i), projected on a p-grid, where the product is integrated exactly.
   const Basis basis(p, p);
   const Matrix direction = grid_directions(basis);

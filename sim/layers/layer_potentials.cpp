@@ -92,16 +92,7 @@ LayerMatrices LayerPotentials::assemble(const Coefficients& position, bool with_
   if (position.order > plan.p || position.values.cols() != 3)
     throw std::invalid_argument("LayerPotentials: the position must have 3 fields of at most the plan's degree");
   const Coefficients x = resized(position, plan.p);
-  const int longitudes = plan.target.nlon, tiles = (longitudes + lanes - 1) / lanes, tasks = plan.target.nlat * tiles;
-  const std::ptrdiff_t row_length = std::ptrdiff_t(with_double ? components : components / 2) * plan.column_stride();
-  RawVector<double> rows(std::size_t(plan.target.nlat) * longitudes * row_length);
-#pragma omp parallel for schedule(static)
-  for (int task = 0; task < tasks; ++task) {
-    const int latitude = task / tiles, tile = task % tiles;
-    plan.rows_of_tile(latitude, tile, x, with_double,
-                      rows.data() + (std::ptrdiff_t(latitude) * longitudes + tile * lanes) * row_length);
-  }
-  return plan.project(rows, with_double);
+  return plan.project(plan.rows_of(x, with_double), with_double);
 }
 
 namespace {

@@ -41,21 +41,46 @@ void transpose(Lane* block) {
 
 }  // namespace
 
-LayerPotentials::Plan::Turn LayerPotentials::Plan::turn_of(int tile) const {
+LayerPotentials::Plan::Turn LayerPotentials::Plan::turn_of(int first) const {
   Turn turn{std::vector<Lane>(p + 1), std::vector<Lane>(p + 1)};
   for (int m = 0; m <= p; ++m)
     for (int lane = 0; lane < lanes; ++lane) {
-      const double angle = 2 * pi * ((std::int64_t(m) * (tile * lanes + lane)) % target.nlon) / target.nlon;
+      const double angle = 2 * pi * ((std::int64_t(m) * (first + lane)) % target.nlon) / target.nlon;
       turn.cosine[m][lane] = std::cos(angle);
       turn.sine[m][lane] = std::sin(angle);
     }
   return turn;
 }
 
+/// Memory of one thread for one tile after the other.
+struct LayerPotentials::Plan::Scratch {
+  LaneBuffer turned, pole;          ///< [nm][3]
+  LaneBuffer x_lat;                 ///< [parity][block, m][value or slope, half][3]
+  LaneBuffer spectra;               ///< [latitude of a pair][cosines of m = 0.., then sines of m = 1..][x, x_theta]
+  std::vector<SourcePoint> points;  ///< [latitude of the pair][orbit][member]
+  LaneBuffer samples, folded;       ///< of the kernels
+  LaneBuffer spectrum[2];           ///< of the kernels: of the targets, of their antipodes
+  LaneBuffer functionals, back;     ///< [nm][component], in the pole's frame and in the original one
+  std::vector<int> rows;
+
+  explicit Scratch(const Plan& plan)
+      : turned(3 * std::size_t(coefficient_count(plan.p))),
+        pole(3 * std::size_t(coefficient_count(plan.p))),
+        x_lat(std::size_t(2) * plan.source_rows.count * 2 * plan.source.half * 3),
+        spectra(std::size_t(2) * (2 * plan.p + 1) * 6),
+        points(std::size_t(2) * plan.source.orbits.size() * 4),
+        samples(8 * components),
+        folded(std::size_t(8) * plan.source.orbits.size() * components),
+        spectrum{LaneBuffer(std::size_t(2) * plan.source_rows.count * plan.source.half * components),
+                 LaneBuffer(std::size_t(2) * plan.source_rows.count * plan.source.half * components)},
+        functionals(std::size_t(components) * coefficient_count(plan.p)),
+        back(std::size_t(components) * coefficient_count(plan.p)),
+        rows(std::size_t(plan.p) + 2) {}
+};
+
 /// Positions in the frame whose pole is the target: the z-rotation, then that by theta. [nm][3]
-LaneBuffer LayerPotentials::Plan::to_pole(int latitude, const Turn& turn, const Coefficients& x) const {
-  const int nc = coefficient_count(p);
-  LaneBuffer turned(3 * nc), pole(3 * nc);
+void LayerPotentials::Plan::to_pole(int latitude, const Turn& turn, const Coefficients& x, Scratch& scratch) const {
+  const LaneBuffer &turned = scratch.turned, &pole = scratch.pole;
   for (int n = 0; n <= p; ++n)
     for (int m = 0; m <= n; ++m)
       for (int d = 0; d < 3; ++d) {
@@ -76,47 +101,37 @@ LaneBuffer LayerPotentials::Plan::to_pole(int latitude, const Turn& turn, const 
     multiply({n, n, w.sine.data()}, 3, turned.get() + centre - 3, EqualRows{-3}, pole.get() + centre - 3,
              EqualRows{-3});
   }
-  return pole;
 }
 
-/// Legendre synthesis of x and x_theta at the source latitudes: [parity][block, m][value or slope, half][3].
-LaneBuffer LayerPotentials::Plan::along_latitudes(const LaneBuffer& pole) const {
+/// Legendre synthesis of x and x_theta at the source latitudes.
+void LayerPotentials::Plan::along_latitudes(Scratch& scratch) const {
   const int half = source.half, spectra = source_rows.count;
-  LaneBuffer x_lat(std::size_t(2) * spectra * 2 * half * 3);
-  std::vector<int> in(p + 2);
+  std::vector<int>& in = scratch.rows;
   for (int b = 0; b < 4; ++b)
     for (std::size_t k = 0; k < source.blocks[b].m.size(); ++k)
       for (int parity = 0; parity < 2; ++parity) {
         const int m = source.blocks[b].m[k], sign = b < 2 ? 1 : -1, count = (p - m - parity + 2) / 2;
-        Lane* out = x_lat.get() + std::ptrdiff_t(parity * spectra + source_rows.first[b] + int(k)) * 2 * half * 3;
+        Lane* out =
+            scratch.x_lat.get() + std::ptrdiff_t(parity * spectra + source_rows.first[b] + int(k)) * 2 * half * 3;
         if (count <= 0) {
           std::fill(out, out + 2 * half * 3, Lane{});
           continue;
         }
         for (int c = 0; c < count; ++c) in[c] = 3 * coefficient_index(m + parity + 2 * c, sign * m);
-        multiply({2 * half, count, source.synthesis[parity][m].data()}, 3, pole.get(), ListedRows(in.data()), out,
-                 EqualRows{3});
+        multiply({2 * half, count, source.synthesis[parity][m].data()}, 3, scratch.pole.get(), ListedRows(in.data()),
+                 out, EqualRows{3});
       }
-  return x_lat;
 }
-
-/// Memory for one pair of source latitudes after the other.
-struct LayerPotentials::Plan::Scratch {
-  LaneBuffer spectra;               ///< [latitude of the pair][cosines of m = 0.., then sines of m = 1..][x, x_theta]
-  LaneBuffer folded;                ///< of the kernels
-  std::vector<SourcePoint> points;  ///< [latitude of the pair][orbit][member]
-  std::vector<Lane> samples;
-};
 
 /// Longitude spectra of x and x_theta at source latitude i and its mirror, where P is even in z for an even n - m and
 /// P' odd.
-void LayerPotentials::Plan::spectra_of(const LaneBuffer& x_lat, int i, Scratch& scratch) const {
+void LayerPotentials::Plan::spectra_of(int i, Scratch& scratch) const {
   const std::ptrdiff_t half = source.half, row = 2 * half * 3, odd = source_rows.count * row;
   Lane* here = scratch.spectra.get();
   Lane* there = here + std::ptrdiff_t(2 * p + 1) * 6;
   for (int b = 0; b < 4; ++b)
     for (std::size_t k = 0; k < source.blocks[b].m.size(); ++k) {
-      const Lane* value = x_lat.get() + (source_rows.first[b] + std::ptrdiff_t(k)) * row + i * 3;
+      const Lane* value = scratch.x_lat.get() + (source_rows.first[b] + std::ptrdiff_t(k)) * row + i * 3;
       const Lane* slope = value + half * 3;
       const std::ptrdiff_t at = 6 * (source.blocks[b].m[k] + (b < 2 ? 0 : p));
       for (int d = 0; d < 3; ++d) {
@@ -152,27 +167,33 @@ void LayerPotentials::Plan::points_of(int lat, Scratch& scratch) const {
   }
 }
 
-/// Kernels of a pair of latitudes, folded.
-void LayerPotentials::Plan::fold_kernels(int i, const Lane* target_x, bool with_double, Scratch& scratch) const {
+/// Kernels of a pair of latitudes, folded. In the frame of the antipode, half a turn about the x-axis further, the
+/// point (t, f) is (pi - t, -f), and its normal is the same.
+void LayerPotentials::Plan::fold_kernels(int i, const Lane* target_x, bool antipode, bool with_double,
+                                         Scratch& scratch) const {
   const int orbits = int(source.orbits.size()), members = source.mirror(i) == i ? 1 : 2;
   for (int l = 0; l < orbits; ++l) {
+    const auto& index = source.orbits[l].index;
     for (int lat = 0; lat < 2; ++lat)
       for (int member = 0; member < 4; ++member) {
-        Lane* out = scratch.samples.data() + (lat * 4 + member) * components;
-        if (lat >= members || source.orbits[l].index[member] < 0)
+        Lane* out = scratch.samples.get() + (lat * 4 + member) * components;
+        if (lat >= members || index[member] < 0) {
           std::fill(out, out + components, Lane{});
-        else
-          kernels(target_x, scratch.points[(std::size_t(lat) * orbits + l) * 4 + member],
-                  singular_weight[lat == 0 ? i : source.mirror(i)], with_double, out);
+          continue;
+        }
+        const int there = antipode ? members - 1 - lat : lat;
+        const int turned = antipode && index[member ^ 1] >= 0 ? member ^ 1 : member;
+        kernels(target_x, scratch.points[(std::size_t(there) * orbits + l) * 4 + turned],
+                singular_weight[lat == 0 ? i : source.mirror(i)], with_double, out);
       }
-    fold(scratch.samples.data(), scratch.folded.get() + l * components, std::ptrdiff_t(orbits) * components,
+    fold(scratch.samples.get(), scratch.folded.get() + l * components, std::ptrdiff_t(orbits) * components,
          with_double ? components : components / 2);
   }
 }
 
-/// Functionals in the pole's frame as functionals in the original one: W^T, then the z-rotation. [nm][component]
-LaneBuffer LayerPotentials::Plan::from_pole(int latitude, const Turn& turn, const LaneBuffer& pole, int used) const {
-  LaneBuffer back(std::size_t(components) * coefficient_count(p));
+/// Functionals in the pole's frame as functionals in the original one: W^T, then the z-rotation.
+void LayerPotentials::Plan::from_pole(int latitude, const Turn& turn, int used, Scratch& scratch) const {
+  const LaneBuffer &pole = scratch.functionals, &back = scratch.back;
   for (int n = 0; n <= p; ++n) {
     const Rotation& w = rotations[latitude][n];
     const int centre = components * coefficient_index(n, 0);
@@ -191,57 +212,79 @@ LaneBuffer LayerPotentials::Plan::from_pole(int latitude, const Turn& turn, cons
         c[k] = turned;
       }
     }
-  return back;
 }
 
 /// From a target a lane to a coefficient a lane, so that rows are written along their length.
-void LayerPotentials::Plan::write_rows(const LaneBuffer& back, int tile, int used, double* rows) const {
-  const int nc = coefficient_count(p), stride = column_stride(), targets = std::min(lanes, target.nlon - tile * lanes);
-  const std::ptrdiff_t row = std::ptrdiff_t(used) * stride;
+void LayerPotentials::Plan::write_rows(const Lane* back, const Tile& tile, bool antipode, int used,
+                                       double* rows) const {
+  const int nc = coefficient_count(p), stride = column_stride();
+  const int latitude = antipode ? target.mirror(tile.latitude) : tile.latitude;
+  const int first = tile.tile * lanes + (antipode ? target.nlon / 2 : 0);
+  double* to[lanes];
+  for (int lane = 0; lane < tile.targets; ++lane)
+    to[lane] = rows + (std::ptrdiff_t(latitude) * target.nlon + (first + lane) % target.nlon) * used * stride;
   const auto write = [&](int nm, int k, Lane a, Lane b, Lane c, Lane d) {
     Lane block[lanes] = {a, b, c, d};
     transpose(block);
-    double* to = rows + std::ptrdiff_t(k) * stride + nm;
-    for (int lane = 0; lane < targets; ++lane) store_lane(to + lane * row, block[lane]);
+    const std::ptrdiff_t at = std::ptrdiff_t(k) * stride + nm;
+    for (int lane = 0; lane < tile.targets; ++lane) store_lane(to[lane] + at, block[lane]);
   };
   int nm = 0;
   for (; nm + lanes <= nc; nm += lanes) {
-    const Lane* from = back.get() + components * nm;
+    const Lane* from = back + components * nm;
     for (int k = 0; k < used; ++k)
       write(nm, k, from[k], from[components + k], from[2 * components + k], from[3 * components + k]);
   }
   for (; nm < stride; nm += lanes)
     for (int k = 0; k < used; ++k) {
-      const auto at = [&](int e) { return nm + e < nc ? back.get()[components * (nm + e) + k] : Lane{}; };
+      const auto at = [&](int e) { return nm + e < nc ? back[components * (nm + e) + k] : Lane{}; };
       write(nm, k, at(0), at(1), at(2), at(3));
     }
 }
 
-/// Rows of the collocation operator for the four targets (theta_latitude, phi of `tile`), in the original frame:
-/// rows[target longitude][component][nm], strides column_stride() and 12 or (S alone) 6 column_stride().
-void LayerPotentials::Plan::rows_of_tile(int latitude, int tile, const Coefficients& x, bool with_double,
-                                         double* rows) const {
-  const int half = source.half, used = with_double ? components : components / 2, orbits = int(source.orbits.size());
-  const Turn& turn = turns[tile];
-  const LaneBuffer pole = to_pole(latitude, turn, x), x_lat = along_latitudes(pole);
-  Lane target_x[3] = {};
+/// Rows of the collocation operator for the four targets of a tile and their antipodes, in the original frame.
+void LayerPotentials::Plan::rows_of_tile(const Tile& tile, const Coefficients& x, bool with_double, double* rows,
+                                         Scratch& scratch) const {
+  const int half = source.half, used = with_double ? components : components / 2;
+  to_pole(tile.latitude, turns[tile.tile], x, scratch);
+  along_latitudes(scratch);
+  Lane target_x[2][3] = {};  // at the poles of the frame
   for (int n = 0; n <= p; ++n)
-    for (int d = 0; d < 3; ++d)
-      target_x[d] += std::sqrt((2 * n + 1) / (4 * pi)) * pole.get()[3 * coefficient_index(n, 0) + d];
-
-  LaneBuffer spectrum(std::size_t(2) * source_rows.count * half * components);
-  Scratch scratch{LaneBuffer(std::size_t(2) * (2 * p + 1) * 6), LaneBuffer(std::size_t(8) * orbits * components),
-                  std::vector<SourcePoint>(std::size_t(2) * orbits * 4), std::vector<Lane>(8 * components)};
+    for (int d = 0; d < 3; ++d) {
+      const Lane at_pole = std::sqrt((2 * n + 1) / (4 * pi)) * scratch.pole.get()[3 * coefficient_index(n, 0) + d];
+      target_x[0][d] += at_pole;
+      target_x[1][d] += n % 2 == 0 ? at_pole : -at_pole;
+    }
   for (int i = 0; i < half; ++i) {
     const int members = source.mirror(i) == i ? 1 : 2;
-    spectra_of(x_lat, i, scratch);
+    spectra_of(i, scratch);
     for (int lat = 0; lat < members; ++lat) points_of(lat, scratch);
-    fold_kernels(i, target_x, with_double, scratch);
-    fourier_analysis(source, source_rows, scratch.folded.get(), spectrum.get(), i, used);
+    for (const int side : {0, 1}) {
+      fold_kernels(i, target_x[side], side == 1, with_double, scratch);
+      fourier_analysis(source, source_rows, scratch.folded.get(), scratch.spectrum[side].get(), i, used);
+    }
   }
-  LaneBuffer in_pole_frame(std::size_t(components) * coefficient_count(p));
-  legendre_analysis(source, source_rows, spectrum.get(), in_pole_frame.get(), used);
-  write_rows(from_pole(latitude, turn, in_pole_frame, used), tile, used, rows);
+  for (const int side : {0, 1}) {
+    legendre_analysis(source, source_rows, scratch.spectrum[side].get(), scratch.functionals.get(), used);
+    if (side == 0)
+      from_pole(tile.latitude, turns[tile.tile], used, scratch);
+    else
+      from_pole(target.mirror(tile.latitude), opposite_turns[tile.tile], used, scratch);
+    write_rows(scratch.back.get(), tile, side == 1, used, rows);
+  }
+}
+
+/// [target latitude][target longitude][component][nm]: components of column_stride() numbers, 12 or (S alone) 6.
+RawVector<double> LayerPotentials::Plan::rows_of(const Coefficients& x, bool with_double) const {
+  const int used = with_double ? components : components / 2;
+  RawVector<double> rows(std::size_t(target.nlat) * target.nlon * used * column_stride());
+#pragma omp parallel
+  {
+    Scratch scratch(*this);
+#pragma omp for schedule(static)
+    for (std::size_t k = 0; k < tiles.size(); ++k) rows_of_tile(tiles[k], x, with_double, rows.data(), scratch);
+  }
+  return rows;
 }
 
 }  // namespace sim

@@ -4,13 +4,13 @@
 
 namespace sim {
 
-Block vesicle_block(const Membrane& m, double c, Preconditioner kind) {
+Block vesicle_block(const Membrane& m, double c, Preconditioner kind, bool felt) {
   Block block;
   block.size = 4 * coefficient_count(m.order());
-  block.trial = [&m, c](const Vector& y) {
+  block.trial = [&m, c, felt](const Vector& y) {
     const Motion motion = unpacked(y, m.order());
-    Trial trial{{implicit_force(m, c, motion), dual_density(m.body, m.material.viscosity_contrast, motion.velocity)},
-                {}};
+    Trial trial{{implicit_force(m, c, motion), {}}, {}};
+    if (felt) trial.densities.dual = dual_density(m.body, m.material.viscosity_contrast, motion.velocity);
     trial.own_velocity = layer_velocity(m, trial.densities.force, motion.velocity);
     return trial;
   };

@@ -31,8 +31,9 @@ enum class Preconditioner {
   spectral,  ///< the corrected one of section 3.5
   block,     ///< a loose GMRES solve of each self block
 };
-/// Of a vesicle at a step of c; the membrane must outlive it.
-Block vesicle_block(const Membrane&, double c, Preconditioner);
+/// Of a vesicle at a step of c; the membrane must outlive it. `felt`: by others, or by images of itself; if not, the
+/// density of the double layer, which they alone see, is left empty.
+Block vesicle_block(const Membrane&, double c, Preconditioner, bool felt);
 
 struct Solve {
   Motion motion;

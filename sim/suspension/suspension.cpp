@@ -209,7 +209,7 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
   // nothing.
   const auto prepare = [&](int i) {
     const Membrane& m = *s.membranes[i];
-    blocks[i] = vesicle_block(m, c, kind);
+    blocks[i] = vesicle_block(m, c, kind, !s.interaction.none());
     rigid[i] = frames.empty() ? Coefficients{m.order(), Matrix::Zero(coefficient_count(m.order()), 3)}
                               : rigid_velocity(m.body, frames[i]);
     right[i] = system_right(m, {m.order(), forcing[i].values - rigid[i].values});
