@@ -58,13 +58,13 @@ std::string time_caption(const sim::Scene& scene, double time, const TimeFormat&
   return fmt::format("{} = {}", unit.symbol, number);
 }
 
-std::string parameter_caption(const sim::Scene& scene, double area_radius, double reduced_volume) {
+std::string parameter_caption(const sim::Scene& scene, std::span<const double> area_radii, double reduced_volume) {
   std::string text;
   // The values of all vesicles, each once: "λ = 1, 10"; of many different ones the range.
   const auto add = [&](std::string_view symbol, auto&& value_of) {
     std::vector<double> values;
-    for (const sim::VesicleParameters& vesicle : scene.vesicles)
-      if (const double value = value_of(vesicle); value > 0) values.push_back(value);
+    for (std::size_t k = 0; k < scene.vesicles.size(); ++k)
+      if (const double value = value_of(scene.vesicles[k], area_radii[k]); value > 0) values.push_back(value);
     std::sort(values.begin(), values.end());
     std::vector<std::string> words;
     for (const double value : values)
@@ -74,17 +74,15 @@ std::string parameter_caption(const sim::Scene& scene, double area_radius, doubl
     if (words.size() > most) words = {fmt::format("{} to {}", words.front(), words.back())};
     text += fmt::format("{}{} = {}", text.empty() ? "" : "   ", symbol, fmt::join(words, ", "));
   };
-  const double rate = flow_rate(scene, area_radius);
   const double gravity = scene.buoyancy.gravity.norm();
-  add("Ca", [&](const sim::VesicleParameters& v) {
-    return v.bending_modulus > 0 ? rate * std::pow(area_radius, 3) / v.bending_modulus : 0;
+  add("Ca", [&](const sim::VesicleParameters& v, double radius) {
+    return v.bending_modulus > 0 ? flow_rate(scene, radius) * std::pow(radius, 3) / v.bending_modulus : 0;
   });
-  add("Bo", [&](const sim::VesicleParameters& v) {
-    return v.bending_modulus > 0
-               ? std::abs(v.density_difference) * gravity * std::pow(area_radius, 4) / v.bending_modulus
-               : 0;
+  add("Bo", [&](const sim::VesicleParameters& v, double radius) {
+    return v.bending_modulus > 0 ? std::abs(v.density_difference) * gravity * std::pow(radius, 4) / v.bending_modulus
+                                 : 0;
   });
-  add("λ", [](const sim::VesicleParameters& v) { return v.viscosity_contrast; });
+  add("λ", [](const sim::VesicleParameters& v, double) { return v.viscosity_contrast; });
   const sim::VesicleParameters& first = scene.vesicles.front();
   const bool alike = std::all_of(scene.vesicles.begin(), scene.vesicles.end(), [&](const sim::VesicleParameters& v) {
     return v.shape == first.shape && v.reduced_volume == first.reduced_volume && v.axes == first.axes &&

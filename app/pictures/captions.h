@@ -29,10 +29,11 @@ TimeFormat time_format(const sim::Scene&, double spacing, double end);
 
 /// "γ̇t = 12.50" in a steady shear flow, "t = 12.50" otherwise, "t = 1.25·10^{-6}" where times are very short or long.
 std::string time_caption(const sim::Scene&, double time, const TimeFormat& = {});
-/// "Ca = 100   λ = 1   ν = 0.85": area_radius and reduced_volume of the first vesicle, as measured, not as requested.
+/// "Ca = 100   λ = 1   ν = 0.85": area radii of all vesicles and reduced volume of the first, as measured, not as
+/// requested.
 /// Where vesicles differ: "λ = 1, 10", and ν only when all shapes are the same. Ca = mu chi R^3 / kappa_b with chi
 /// the shear or extension rate, or the wall-ward shear a R of a Poiseuille flow.
-std::string parameter_caption(const sim::Scene&, double area_radius, double reduced_volume);
+std::string parameter_caption(const sim::Scene&, std::span<const double> area_radii, double reduced_volume);
 /// "error of position 1.1·10^{−3} R_{0}": what the steps up to a time are estimated to leave, added up as `info` does;
 /// of the step that contains it the share that has passed. Empty before the first step.
 std::string error_caption(std::span<const sim::StepRecord>, double time);

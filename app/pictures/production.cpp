@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -43,13 +44,28 @@ SourceMeasures measures_of(const PictureSource& source, bool titled, std::option
   }
   m.laid.assign(laid.begin(), laid.end());
   sim::Plans plans;
-  const sim::VesicleMeasures first = sim::measure(plans, trajectory.state(0).vesicles.front(), 1, 1);
-  const double area_radius = std::sqrt(first.area / sim::default_area);
+  const sim::State start = trajectory.state(0);
+  const sim::VesicleMeasures first = sim::measure(plans, start.vesicles.front(), 1, 1);
+  std::vector<double> radii;
+  for (std::size_t k = 0; k < start.vesicles.size(); ++k) {
+    const auto &own = settings.scene.vesicles[k], &front = settings.scene.vesicles.front();
+    const bool as_first = own.radius == front.radius && own.area == front.area &&
+                          own.axes == front.axes;  // most are: they cost no measuring
+    radii.push_back(
+        std::sqrt((as_first ? first : sim::measure(plans, start.vesicles[k], 1, 1)).area / sim::default_area));
+  }
+  const auto [least, most] = std::minmax_element(radii.begin(), radii.end());
+  constexpr double alike = 1.01;
+  const bool of_one_size = *most < alike * *least;
+  // Of many sizes, the mean is the measure of lengths, and the scale bar says so.
+  const double area_radius =
+      of_one_size ? radii.front() : std::accumulate(radii.begin(), radii.end(), 0.0) / double(radii.size());
   std::optional<sim::State> only;
   if (still && !settings.view.field_range.shared) only = boxed(settings.scene, state_at(trajectory, *still));
   m.painting = plan_painting(trajectory, chosen, settings, area_radius, only ? &*only : nullptr);
-  m.captions.parameters = parameter_caption(settings.scene, area_radius, first.reduced_volume);
+  m.captions.parameters = parameter_caption(settings.scene, radii, first.reduced_volume);
   m.captions.scale_length = area_radius;
+  if (!of_one_size) m.captions.scale = "mean R_{0}";
   if (settings.view.title || titled) m.captions.title = printable(settings.scene.title);
   return m;
 }

@@ -478,3 +478,14 @@ TEST_CASE("times of a movie are written so that its frames differ, in any unit")
   CHECK(app::time_caption(any, 1.25e-6, app::time_format(any, 1e-8, 4e-6)) == "t = 1.25·10^{−6}");
   CHECK(app::time_caption(any, 2.5e6, app::time_format(any, 1e4, 9e6)) == "t = 2.50·10^{6}");
 }
+
+TEST_CASE("the caption gives each vesicle the capillary number of its own size", "[pictures]") {
+  sim::Scene s;
+  s.flows = {{}};
+  s.flows[0].kind = "shear";
+  s.flows[0].rate = 2;
+  s.vesicles.resize(2);
+  for (sim::VesicleParameters& v : s.vesicles) v.bending_modulus = 0.5;
+  CHECK(app::parameter_caption(s, std::vector{1.0, 1.0}, 0.9) == "Ca = 4   λ = 1   ν = 0.9");
+  CHECK(app::parameter_caption(s, std::vector{2.0, 0.5}, 0.9) == "Ca = 0.5, 32   λ = 1   ν = 0.9");
+}
