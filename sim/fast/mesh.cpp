@@ -237,8 +237,7 @@ MeshPoints Mesh::place(const Points& points, const Eigen::Vector3d& middle, bool
   return placed;
 }
 
-void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
-                        Points& velocity) const {
+MeshVelocity Mesh::velocity_of(const MeshPoints& sources, const Points& force, const Tensors& dual) const {
   const Plan& m = *plan_;
   std::vector<Plan::Field> fields(dual.cols() > 0 ? 4 : 3);
   for (Plan::Field& field : fields) field.resize(m.plane * std::size_t(m.nodes[2]));
@@ -246,8 +245,20 @@ void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Te
   m.forward_planes(fields);
   m.multiply_columns(fields);
   m.backward_planes(fields);
-  m.read(fields, targets, velocity);
-  if (!m.periodic) velocity.colwise() += 2 / m.cut * force.rowwise().sum();
+  MeshVelocity velocity;
+  for (std::size_t c = 0; c < 3; ++c) velocity.nodes[c] = std::move(fields[c]);
+  if (!m.periodic) velocity.everywhere = 2 / m.cut * force.rowwise().sum();
+  return velocity;
+}
+
+void Mesh::add_velocity(const MeshVelocity& v, const MeshPoints& targets, Points& velocity) const {
+  plan_->read(v.nodes, targets, velocity);
+  if (!v.everywhere.isZero(0)) velocity.colwise() += v.everywhere;
+}
+
+void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
+                        Points& velocity) const {
+  add_velocity(velocity_of(sources, force, dual), targets, velocity);
 }
 
 }  // namespace sim

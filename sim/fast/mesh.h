@@ -36,6 +36,12 @@ struct MeshPoints {
   std::vector<int> touching, first;   ///< the points whose windows reach into block b: touching[first[b]] ...
 };
 
+/// The smooth part of some sources at all nodes of a mesh, to be read at any points.
+struct MeshVelocity {
+  std::array<RawVector<double>, 3> nodes;
+  Eigen::Vector3d everywhere{0, 0, 0};  ///< added to them
+};
+
 /// Plan; immutable.
 class Mesh {
  public:
@@ -60,6 +66,9 @@ class Mesh {
   /// the number of threads.
   void add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
                     Points& velocity) const;
+  /// The same in two steps.
+  MeshVelocity velocity_of(const MeshPoints& sources, const Points& force, const Tensors& dual) const;
+  void add_velocity(const MeshVelocity&, const MeshPoints& targets, Points& velocity) const;
 
  private:
   struct Plan;
