@@ -282,7 +282,7 @@ FlowSamples velocity_at(const FlowField& field, const Matrix& points) {
       const Vec3 rigid = source.rigid.at(x - view.shift) + faster_by(field, x, view.shift);
       u.row(k) += (source.viscosity_contrast - 1) * rigid.transpose();
       u.row(k) /= source.viscosity_contrast;
-      samples.within[std::size_t(first + k)] = view.source;
+      samples.within[std::size_t(first) + std::size_t(k)] = view.source;
     }
     for (const Touching& t : block.touching) u.row(t.point) = t.velocity.transpose();
     samples.velocity.middleRows(first, u.rows()) = u;
