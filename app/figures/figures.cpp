@@ -103,8 +103,12 @@ void add_flow(render::FigureInput& input, const FigureSource& source) {
   sim::Plans plans;
   const sim::Scene& scene = source.settings.scene;
   const TimeUnit unit = time_unit(scene);
-  input.flow = flow_picture(plans, scene, input.states.front(),
-                            flow_request(plans, input.states.front(), input.parameters, input.length));
+  const sim::State state = boxed(scene, input.states.front());
+  const FlowRequest request = flow_request(plans, state, input.parameters, input.length);
+  input.flow = flow_picture(plans, scene, state, request);
+  WindowMembranes shown = membranes_in(scene, state, request);
+  input.states.front() = std::move(shown.state);
+  input.flow.owners = std::move(shown.owners);
   const std::string speed = input.parameters.frame == "vesicle" ? "in-plane |u\u00a0−\u00a0U|" : "in-plane |u|";
   if (unit.symbol != "t") {
     input.flow.speed_factor = 1 / (unit.factor * input.length);

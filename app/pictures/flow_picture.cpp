@@ -1,8 +1,10 @@
 #include "app/pictures/flow_picture.h"
 
 #include "app/base/interrupt.h"
+#include "app/pictures/instants.h"
 #include "app/pictures/scales.h"
 
+#include "render/scene/detail.h"
 #include "render/scene/surface.h"
 #include "sim/suspension/velocity.h"
 
@@ -149,6 +151,33 @@ class PlaneSampler {
 
 }  // namespace
 
+WindowMembranes membranes_in(const sim::Scene& scene, const sim::State& state, const FlowRequest& request) {
+  WindowMembranes found{state, {}};
+  if (!scene.cell.size) return found;
+  found.state.vesicles.clear();
+  std::vector<render::Sketch> sketches;
+  for (const sim::VesicleState& vesicle : state.vesicles) sketches.push_back(render::sketch_of(vesicle));
+  // As many cells as the window reaches into, and one more for what lies across a face.
+  const sim::Vec3 size = *scene.cell.size;
+  const double reach = std::max({-request.x.low, request.x.high, -request.y.low, request.y.high});
+  render::ViewParameters view;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const auto axis = static_cast<Eigen::Index>(d);
+    view.copies[d] = 1 + static_cast<int>(std::ceil((std::abs(request.plane.origin[axis]) + reach) / size[axis] - 0.5));
+  }
+  for (const Shown& s : shown_of(scene, view, state)) {
+    const render::Sketch& sketch = sketches[s.vesicle];
+    const sim::Vec3 from = render::to_sim(sketch.centre) + s.shift - request.plane.origin;
+    const double x = from.dot(request.plane.right), y = from.dot(request.plane.up), r = sketch.radius;
+    if (std::abs(from.dot(request.plane.normal)) > r || x + r < request.x.low || x - r > request.x.high ||
+        y + r < request.y.low || y - r > request.y.high)
+      continue;
+    found.state.vesicles.push_back(moved(state.vesicles[s.vesicle], s.shift));
+    found.owners.push_back(s.vesicle);
+  }
+  return found;
+}
+
 sim::Vec3 frame_velocity(sim::Plans& plans, const sim::State& state) {
   sim::Vec3 sum = sim::Vec3::Zero();
   for (const sim::VesicleState& vesicle : state.vesicles) sum += sim::centroid_velocity(plans, vesicle);
@@ -201,7 +230,7 @@ render::FlowPicture flow_picture(sim::Plans& plans, const sim::Scene& scene, con
   picture.spacing = request.spacing;
   // The first lines hug the membranes from both sides, where one looks first.
   std::vector<Vec2> seeds;
-  for (const sim::VesicleState& vesicle : state.vesicles)
+  for (const sim::VesicleState& vesicle : membranes_in(scene, state, request).state.vesicles)
     for (const render::ClosedCurve& curve : render::cut(vesicle.position, request.plane)) {
       Eigen::Index at = 0;
       curve.points.col(0).maxCoeff(&at);

@@ -21,6 +21,14 @@ struct FlowRequest {
 /// Throws Interrupted at the first signal: fine spacings take minutes.
 render::FlowPicture flow_picture(sim::Plans&, const sim::Scene&, const sim::State&, const FlowRequest&);
 
+/// What membranes a window shows: those of the state; of a boxed state in a periodic cell, all images that may reach
+/// into the window, and the vesicles that they are images of.
+struct WindowMembranes {
+  sim::State state;
+  std::vector<std::size_t> owners;
+};
+WindowMembranes membranes_in(const sim::Scene&, const sim::State&, const FlowRequest&);
+
 /// Mean of the velocities of the vesicles' centroids.
 sim::Vec3 frame_velocity(sim::Plans&, const sim::State&);
 

@@ -13,6 +13,14 @@
 
 namespace app {
 
+namespace {
+
+const double coefficient_of_one = std::sqrt(4 * std::numbers::pi);
+
+sim::Vec3 middle_of(const sim::VesicleState& v) { return v.position.values.row(0).transpose() / coefficient_of_one; }
+
+}  // namespace
+
 sim::State state_at(const sim::TrajectoryReader& trajectory, double time) {
   std::int64_t low = 0, high = trajectory.count() - 1;
   while (low < high) {  // first state at or after `time`
@@ -27,16 +35,43 @@ sim::State state_at(const sim::TrajectoryReader& trajectory, double time) {
   return render::interpolated(trajectory.state(low - 1), after, time);
 }
 
+sim::VesicleState moved(sim::VesicleState v, const sim::Vec3& shift) {
+  const Eigen::RowVector3d change = coefficient_of_one * shift.transpose();
+  v.position.values.row(0) += change;
+  v.position_before.values.row(0) += change;
+  return v;
+}
+
 sim::State boxed(const sim::Scene& scene, sim::State state) {
   if (!scene.cell.size) return state;
-  const double constant = std::sqrt(4 * std::numbers::pi);  // coefficient of 1
   for (sim::VesicleState& v : state.vesicles) {
-    const sim::Vec3 middle = v.position.values.row(0).transpose() / constant;
-    const Eigen::RowVector3d shift = constant * sim::into_box(scene, state.time, middle).transpose();
-    v.position.values.row(0) += shift;
-    v.position_before.values.row(0) += shift;
+    const sim::Vec3 middle = middle_of(v), shift = sim::into_box(scene, state.time, middle);
+    if (shift.isZero(0)) continue;
+    v = moved(std::move(v), shift);
+    sim::Matrix both(2, 3);
+    both << (middle + shift).transpose(), middle.transpose();
+    const sim::Matrix u = sim::background_velocity(scene.flows, state.time, both);
+    v.velocity.values.row(0) += coefficient_of_one * (u.row(0) - u.row(1));
   }
   return state;
+}
+
+std::vector<Shown> shown_of(const sim::Scene& scene, const render::ViewParameters& view, const sim::State& state) {
+  std::vector<Shown> all;
+  for (std::size_t v = 0; v < state.vesicles.size(); ++v) all.push_back({v, sim::Vec3::Zero()});
+  const sim::CellSides sides = sim::cell_at(scene, state.time);
+  if (!sides) return all;
+  const std::vector<int>& most = view.copies;
+  for (int c = -most[2]; c <= most[2]; ++c)
+    for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
+      // A layer above leans to one side; what leaves the box there comes back on the other.
+      const double length = (*sides)(0, 0), lean = c * (*sides)(0, 2);
+      const double back = c == 0 ? 0 : -std::floor((middle_of(state.vesicles[v])[0] + lean) / length + 0.5);
+      for (int b = -most[1]; b <= most[1]; ++b)
+        for (int a = -most[0]; a <= most[0]; ++a)
+          if (a != 0 || b != 0 || c != 0) all.push_back({v, *sides * sim::Vec3(a + back, b, c)});
+    }
+  return all;
 }
 
 std::vector<render::FlowLines::Line> edges_of_cell(const sim::Scene& scene) {

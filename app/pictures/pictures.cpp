@@ -21,14 +21,22 @@ namespace app {
 
 namespace {
 
-/// A mesh for each vesicle that may be seen, as fine as the picture shows it, with its colour and field, opened where
-/// the style opens it. centre: of all.
+render::Sketch shifted(render::Sketch sketch, const glm::dvec3& shift) {
+  for (glm::dvec3& point : sketch.points) point += shift;
+  sketch.centre += shift;
+  return sketch;
+}
+
+/// A mesh for each vesicle and each copy that may be seen, as fine as the picture shows it, with its colour and field,
+/// opened where the style opens it. centre: of all.
 std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const sim::State& state,
-                                    const render::Camera& camera, const glm::dvec3& centre) {
+                                    const std::vector<Shown>& shown, const render::Camera& camera,
+                                    const glm::dvec3& centre) {
   const bool full = p.view.detail == "full";
   const render::StyleRow& style = render::find_style(p.view.style);
-  std::vector<render::Sketch> sketches;
-  for (const sim::VesicleState& vesicle : state.vesicles) sketches.push_back(render::sketch_of(vesicle));
+  std::vector<render::Sketch> own, sketches;
+  for (const sim::VesicleState& vesicle : state.vesicles) own.push_back(render::sketch_of(vesicle));
+  for (const Shown& s : shown) sketches.push_back(shifted(own[s.vesicle], render::to_glm(s.shift)));
   std::vector<bool> hidden(sketches.size(), false);
   if (!style.see_through && !style.cut && sketches.size() > 2) hidden = render::hidden(sketches, camera, p.view);
   const sim::Vec3 plane = sim::Vec3(centre.x, centre.y, centre.z) + p.view.cut_offset * p.view.cut_normal.normalized();
@@ -37,19 +45,21 @@ std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const si
     for (const render::Sketch& sketch : sketches) occluders.push_back(render::occluder_of(sketch));
   std::vector<render::Body> bodies;
   sim::Surroundings surroundings(sim::cell_at(p.source.settings.scene, state.time));
-  for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
-    const sim::VesicleState& vesicle = state.vesicles[v];
-    const render::Sketch& sketch = sketches[v];
-    if (hidden[v] || !render::in_picture(camera, sketch)) continue;
+  std::vector<std::optional<sim::Coefficients>> fields(state.vesicles.size());
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const render::Sketch& sketch = sketches[k];
+    if (hidden[k] || !render::in_picture(camera, sketch)) continue;
+    const std::size_t v = shown[k].vesicle;
+    const sim::VesicleState vesicle = moved(state.vesicles[v], shown[k].shift);
     const double pixels = render::pixels_at(camera, sketch.centre, p.view.size[1]);
-    std::optional<sim::Coefficients> field;
-    if (p.painting.field) field = painted_field(studio.plans, p.painting, p.source.settings, state, v, surroundings);
+    if (p.painting.field && !fields[v])
+      fields[v] = painted_field(studio.plans, p.painting, p.source.settings, state, v, surroundings);
     render::Body& body = bodies.emplace_back();
     body.mesh =
         render::make_mesh(full ? studio.meshes.finest() : studio.meshes.choose(sketch, vesicle.position.order, pixels),
-                          vesicle, field ? &*field : nullptr);
+                          vesicle, fields[v] ? &*fields[v] : nullptr);
     body.colour = p.painting.bodies[v];
-    if (!occluders.empty()) render::shade(body.mesh, v, sketches, occluders, camera, body.mesh.area_radius * pixels);
+    if (!occluders.empty()) render::shade(body.mesh, k, sketches, occluders, camera, body.mesh.area_radius * pixels);
     if (!style.cut) continue;
     if (!studio.sections) studio.sections.emplace(render::rim_latitudes);
     const sim::Vec3 through = p.view.cut == "common" ? plane
@@ -67,8 +77,9 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
   render::Frame frame;
   frame.view = p.view;
   frame.camera = render::make_camera(p.framing, moment);
-  frame.bodies = bodies_of(studio, p, state, frame.camera, summary.centroid);
-  frame.vesicles = state.vesicles.size();
+  const std::vector<Shown> shown = shown_of(p.source.settings.scene, p.view, state);
+  frame.bodies = bodies_of(studio, p, state, shown, frame.camera, summary.centroid);
+  frame.vesicles = shown.size();
   frame.legend = p.painting.legend;
   frame.arrows = arrows_of(p, summary);
   if (p.view.flow_profile) frame.profile = profile_of(p, frame.camera, state.time);
@@ -101,6 +112,7 @@ Settings plain_settings(const Settings& settings, const std::string& background)
       false;
   plain.view.title = plain.view.triad = plain.view.flow_profile = plain.view.inset = plain.view.colour_bar = false;
   plain.view.streamlines = "off";
+  plain.view.copies = {0, 0, 0};
   plain.view.eye.reset();
   plain.view.target.reset();
   return plain;

@@ -99,16 +99,27 @@ Production arranged(const render::ViewParameters& first, std::size_t sources, st
   return production;
 }
 
-/// In a periodic cell, its corners stand for one vesicle more, so that the picture holds them.
-std::vector<render::StateSummary> with_cell(const PictureSource& source, std::vector<render::StateSummary> summaries) {
+/// In a periodic cell, the corners of all that is drawn stand for one vesicle more, so that the picture holds it: of
+/// the box, or of its copies and of what reaches out of them as the vesicles reach out of the box.
+std::vector<render::StateSummary> with_cell(const PictureSource& source, const render::ViewParameters& view,
+                                            std::vector<render::StateSummary> summaries) {
   const std::optional<sim::Vec3>& size = source.settings.scene.cell.size;
   if (!size) return summaries;
+  const sim::Vec3 number(view.copies[0], view.copies[1], view.copies[2]);
   for (render::StateSummary& s : summaries) {
     const std::size_t points = s.points_of_each();
+    sim::Vec3 low = -*size / 2, high = *size / 2;
+    if (!number.isZero())
+      for (std::size_t k = 0; k < s.points.size(); ++k) {
+        low = low.cwiseMin(render::to_sim(s.point(k)));
+        high = high.cwiseMax(render::to_sim(s.point(k)));
+      }
+    low -= number.cwiseProduct(*size);
+    high += number.cwiseProduct(*size);
     s.centroids.emplace_back(0);
     for (std::size_t k = 0; k < points; ++k) {
-      const sim::Vec3 corner(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5);
-      s.points.emplace_back(render::to_glm(sim::Vec3(corner.cwiseProduct(*size))));
+      const sim::Vec3 corner(k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]);
+      s.points.emplace_back(render::to_glm(corner));
       s.areas.emplace_back(0);
     }
   }
@@ -118,8 +129,8 @@ std::vector<render::StateSummary> with_cell(const PictureSource& source, std::ve
 /// The view with its framing and captions.
 ViewPanel framed_panel(const PictureSource& source, const render::ViewParameters& view, const SourceMeasures& m) {
   ViewPanel p{.source = source, .view = view};
-  p.framing = render::frame_trajectory(view.follow == "vesicle" ? m.summaries : with_cell(source, m.summaries), view,
-                                       source.settings.key_frames);
+  p.framing = render::frame_trajectory(view.follow == "vesicle" ? m.summaries : with_cell(source, view, m.summaries),
+                                       view, source.settings.key_frames);
   p.captions = m.captions;
   p.painting = m.painting;
   p.laid = m.laid;

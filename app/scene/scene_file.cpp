@@ -141,6 +141,8 @@ struct Reader {
   void check(const toml::table& table, render::ViewParameters& p) const {
     if (p.size.size() != 2) fail_at(source_of(table, "size"), "'size' must be two whole numbers, [width, height]");
     if (p.cut_normal.norm() == 0) fail_at(source_of(table, "cut_normal"), "'cut_normal' must not be the zero vector");
+    if (p.copies.size() != 3)
+      fail_at(source_of(table, "copies"), "'copies' must be three whole numbers, of copies along x, y and z");
     if (p.up.norm() == 0) fail_at(source_of(table, "up"), "'up' must not be the zero vector");
     try {
       for (const std::string& colour : p.colours) render::parse_colour(colour);
@@ -257,6 +259,19 @@ struct Reader {
     if (n.least_order > n.most_order)
       fail_at(source_of(*table, n.least_order != sim::NumericsParameters{}.least_order ? "least_order" : "most_order"),
               fmt::format("'least_order' {} is above 'most_order' {}", n.least_order, n.most_order));
+  }
+
+  /// Once all vesicles are known.
+  void check_copies(const Settings& settings) const {
+    const std::vector<int>& copies = settings.view.copies;
+    if (copies[0] == 0 && copies[1] == 0 && copies[2] == 0) return;
+    const toml::source_region& source = source_of(*root["view"].as_table(), "copies");
+    if (!settings.scene.cell.size) fail_at(source, "only a periodic [cell] has copies to draw: leave 'copies' out");
+    constexpr double most = 20000;
+    double all = static_cast<double>(settings.scene.vesicles.size());
+    for (const int number : copies) all *= 2 * number + 1;
+    if (all > most)
+      fail_at(source, fmt::format("{:.0f} vesicles and copies are too many for a picture; give smaller numbers", all));
   }
 
   /// Every result has a name of its own.
@@ -407,6 +422,7 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
     } catch (const std::invalid_argument& error) {
       fail_at(root.get("placement")->source(), error.what());
     }
+  reader.check_copies(settings);
   return settings;
 }
 

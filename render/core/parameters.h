@@ -74,6 +74,7 @@ struct ViewParameters {
   std::optional<double> depth_cue;
   double occlusion = 1;
   std::string detail = "auto";
+  std::vector<int> copies{0, 0, 0};  ///< on each side of a periodic cell, along x, y, z
 };
 
 template <class P, class V>
@@ -268,6 +269,12 @@ void visit(P& p, V&& v) {
               .meaning = "auto: small vesicles have fewer lines, no dots and a finer contour; full: all have all",
               .choices = detail_names},
     p.detail);
+  v(Parameter{.name = "copies",
+              .unit = "",
+              .meaning = "how many copies of a periodic cell are drawn on each side of it, along x, y and z",
+              .minimum = 0,
+              .maximum = 10},
+    p.copies);
 }
 
 /// [[key_frame]]: where the camera is at one time; between key frames it moves smoothly.

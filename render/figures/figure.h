@@ -64,6 +64,8 @@ struct FlowPicture {
   double speed_factor = 1;           ///< shown speed = this x speed
   double spacing = 0.2;              ///< of the lines, length
   std::vector<std::string> remarks;  ///< first lines of the CSV
+  /// In a periodic cell the state has the images that the window shows: of which vesicles; else empty.
+  std::vector<std::size_t> owners;
 };
 
 /// One vesicle in a phase diagram.

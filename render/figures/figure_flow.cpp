@@ -176,6 +176,7 @@ struct FlowDrawing {
   std::array<Range, 2> cells;          ///< covered by the image, likewise
   std::shared_ptr<const Image> image;  ///< of the speeds; null: none
   Contours sections;
+  std::vector<std::size_t> owners;  ///< of them, as in FlowPicture
   std::string title, frame;
 };
 
@@ -209,11 +210,19 @@ void draw_flow(const Pen& pen, const FlowDrawing& d) {
 }
 
 void draw_sections(const Pen& pen, const FlowDrawing& d) {
+  const Panel& panel = d.layout.panel;
+  cairo_save(pen.cairo);
+  if (!d.owners.empty()) {  // images cross the edges of the window
+    cairo_rectangle(pen.cairo, panel.left, panel.top, panel.width, panel.height);
+    cairo_clip(pen.cairo);
+  }
   for (std::size_t v = 0; v < d.sections.size(); ++v)
     for (const ClosedCurve& curve : d.sections[v]) {
       draw_closed_curve(pen, d.layout.panel, curve, Eigen::Vector2d::Zero(), {pen.theme.ground, 2.6, 0.85});
-      draw_closed_curve(pen, d.layout.panel, curve, Eigen::Vector2d::Zero(), {vesicle_colour(pen.theme, v), 1.5});
+      draw_closed_curve(pen, d.layout.panel, curve, Eigen::Vector2d::Zero(),
+                        {vesicle_colour(pen.theme, d.owners.empty() ? v : d.owners[v]), 1.5});
     }
+  cairo_restore(pen.cairo);
 }
 
 void draw_speed_bar(const Pen& pen, const FlowDrawing& d) {
@@ -267,7 +276,8 @@ void draw(const Pen& pen, const FlowDrawing& d) {
 
 std::string frame_text(const FigureInput& input) {
   if (input.parameters.frame != "vesicle") return "laboratory frame";
-  return input.states.front().vesicles.size() > 1 ? "frame of the centroid" : "frame of the vesicle";
+  const bool several = !input.flow.owners.empty() || input.states.front().vesicles.size() > 1;
+  return several ? "frame of the centroid" : "frame of the vesicle";
 }
 
 }  // namespace
@@ -294,6 +304,7 @@ Figure draw_streamlines(const FigureInput& input) {
   d.cells = flow.speed_window;
   if (top_speed > 0) d.image = std::make_shared<const Image>(picture_of(flow.speed, top_speed / flow.speed_factor));
   d.sections = sections_of(state, flow.plane, input.length);
+  d.owners = flow.owners;
   Figure figure;
   figure.csv = csv_of(flow, input.length);
   figure.drawing =

@@ -283,8 +283,8 @@ MeshPoints Mesh::place_targets(const Points& points, const Eigen::Vector3d& midd
   return placed;
 }
 
-void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
-                        Points& velocity, const Ranks& ranks) const {
+MeshVelocity Mesh::velocity_of(const MeshPoints& sources, const Points& force, const Tensors& dual,
+                               const Ranks& ranks) const {
   const Plan& m = *plan_;
   const MeshSlab slab = m.slab(ranks.rank, ranks.count);
   const bool divided = ranks.count > 1;
@@ -298,10 +298,21 @@ void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Te
     m.multiply_columns(fields);
   m.backward_planes(slab, fields);
   if (divided) m.fill_halo(slab, ranks, fields);
-  m.read(fields, targets, slab, divided, velocity);
-  if (m.periodic) return;
-  const Eigen::Vector3d net = 2 / m.cut * force.rowwise().sum();
-  for (const int k : targets.point) velocity.col(k) += net;
+  MeshVelocity velocity;
+  for (std::size_t c = 0; c < 3; ++c) velocity.nodes[c] = std::move(fields[c]);
+  if (!m.periodic) velocity.everywhere = 2 / m.cut * force.rowwise().sum();
+  return velocity;
+}
+
+void Mesh::add_velocity(const MeshVelocity& v, const MeshPoints& targets, Points& velocity, const Ranks& ranks) const {
+  plan_->read(v.nodes, targets, plan_->slab(ranks.rank, ranks.count), ranks.count > 1, velocity);
+  if (v.everywhere.isZero(0)) return;
+  for (const int k : targets.point) velocity.col(k) += v.everywhere;
+}
+
+void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
+                        Points& velocity, const Ranks& ranks) const {
+  add_velocity(velocity_of(sources, force, dual, ranks), targets, velocity, ranks);
 }
 
 }  // namespace sim

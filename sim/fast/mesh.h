@@ -41,6 +41,13 @@ struct MeshPoints {
   std::vector<int> home;              ///< targets: by point given, the rank in whose slab its window begins
 };
 
+/// The smooth part of some sources at all nodes of a mesh, of several ranks at those of the slab and its halo, to be
+/// read at any points.
+struct MeshVelocity {
+  std::array<RawVector<double>, 3> nodes;
+  Eigen::Vector3d everywhere{0, 0, 0};  ///< added to them
+};
+
 /// Plan; immutable.
 class Mesh {
  public:
@@ -66,6 +73,10 @@ class Mesh {
   /// not depend on the number of threads and ranks, which call it together.
   void add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
                     Points& velocity, const Ranks& = alone) const;
+  /// The same in two steps.
+  MeshVelocity velocity_of(const MeshPoints& sources, const Points& force, const Tensors& dual,
+                           const Ranks& = alone) const;
+  void add_velocity(const MeshVelocity&, const MeshPoints& targets, Points& velocity, const Ranks& = alone) const;
 
  private:
   struct Plan;

@@ -6,8 +6,13 @@
 // is exact). Both sides converge to the membrane's own velocity. Far from a membrane the smooth rule on a coarse grid
 // is used (far_field.h); nearer, in its place, the coarser of two finer grids that is fine enough, and within some
 // spacings of the finest the near-singular rule of near.h.
+//
+// In a periodic cell the sums are over all images, as in the steps: a smooth part from a mesh, and round each image
+// what is missing to these rules (flow_images.h). The mean of u - u_inf over the cell is zero. An image moves as its
+// vesicle does and as u_inf differs between them.
 #pragma once
 
+#include "sim/suspension/flow_images.h"
 #include "sim/suspension/suspension.h"
 
 #include <array>
@@ -17,6 +22,7 @@ namespace sim {
 struct FlowFieldOptions {
   double spacings = 3;           ///< least distance n of the smooth rule in source spacings; error ~ e^(-2 pi n)
   NearOrder near_order{48, 64};  ///< 32 x 40 is enough for pictures, at a third of the cost
+  double tolerance = 1e-6;       ///< of the sums over images, relative
   bool hold_spheres = true;      ///< by the tension that keeps them round in a run; otherwise they stretch as by (3a)
 };
 
@@ -42,15 +48,15 @@ struct FlowField {
   std::vector<FlowSource> sources;
   std::shared_ptr<const std::vector<Sources>> coarse;  ///< of all membranes, for the far field
   std::vector<SourceDensities> coarse_densities;
+  std::shared_ptr<const FlowImages> images;  ///< in a periodic cell
   FlowFieldOptions options;
 };
-/// Forces are computed as the stepper does: bending, tension, buoyancy and repulsion of the scene. Throws
-/// std::invalid_argument for a scene with a periodic cell.
+/// Forces are computed as the stepper does: bending, tension, buoyancy and repulsion of the scene.
 FlowField flow_field(Plans&, const Scene&, const State&, const FlowFieldOptions& = {});
 
 struct FlowSamples {
   Matrix velocity;          ///< count x 3
-  std::vector<int> within;  ///< index of the vesicle that contains the point, -1 outside all
+  std::vector<int> within;  ///< index of the vesicle that, or an image of which, contains the point, -1 outside all
   Vector distance;          ///< to the nearest membrane; a lower bound beyond the range of the near rule
 };
 /// At points, count x 3. The result does not depend on the number of threads.

@@ -132,6 +132,37 @@ TEST_CASE("a figure of pair distributions counts pairs in a cell from a time on,
   CHECK_THAT(refused.err, Contains("t.h5' has no periodic [cell]"));
 }
 
+TEST_CASE("streamlines of a cell go on through its faces, round the images of its vesicles", "[figure]") {
+  const Bench cell({"cell.size=[3.4, 4, 4.5]"}), free;
+  const auto ink = [](const Bench& bench) {
+    const support::Outcome drawn = bench.figure(
+        "streamlines", {"--size", "480x360px", "--set", "figure.spacing=0.6", "--set", "figure.margin=3.4"});
+    INFO(drawn.err);
+    REQUIRE(drawn.status == 0);
+    const render::Image image = render::read_png(bench.folder / "streamlines.png").image;
+    int count = 0;  // of the colour of sections
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const std::uint8_t* pixel = image.at(x, y);
+        count += pixel[0] > pixel[2] + 80;
+      }
+    return count;
+  };
+  // A window three cells wide has a vesicle and its two images, and parts of those above and below.
+  CHECK(ink(cell) > 2.5 * ink(free));
+  std::istringstream lines(support::read_file(cell.folder / "streamlines.csv"));
+  double last = 1e9;
+  int through = 0;
+  for (std::string line; std::getline(lines, line);) {
+    int number = 0, closed = 0;
+    double x = 0;
+    if (std::sscanf(line.c_str(), "%d,%d,%lf", &number, &closed, &x) != 3) continue;
+    through += std::abs(x - last) < 0.1 && (x - 1.7) * (last - 1.7) <= 0;
+    last = x;
+  }
+  CHECK(through > 3);
+}
+
 TEST_CASE("a figure of tank-treading refuses a vesicle that tumbles and says what a short run leaves open",
           "[figure]") {
   const Bench rests;

@@ -10,6 +10,8 @@
 #include "sim/trajectory/trajectory.h"
 #include "tests/support/catch.h"
 
+#include <fmt/format.h>
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -314,6 +316,75 @@ TEST_CASE("a common cut opens all vesicles at one plane, others each through its
   CHECK(common[1] == Approx(each[1]).margin(1.5));
   CHECK(common[2] == Approx(each[1]).margin(rim));  // its equator is behind the plane and seen whole
   CHECK(common[0] == Approx(0.8 * (each[1] - rim) + rim).margin(2));
+}
+
+TEST_CASE("a cell with its copies looks like a cell of as many cells, also while it leans", "[commands]") {
+  const std::string head = "[flow]\nkind = \"shear\"\n[time]\nend = 0.4\nstep = 0.2\n";
+  const std::string tail =
+      "[view]\nsize = [640, 480]\neye = [3, -50, 9]\ntarget = [0, 0, 0]\nzoom = 1.1\ncolours = [\"#d02020\", "
+      "\"#2040d0\"]\nbackground = \"white\"\nflow_arrows = false\nfield = \"mean-curvature\"\nfield_range = [0.5, "
+      "1.5]\n";
+  const auto scene_of = [&](double cells) {
+    std::string text = head + fmt::format("[cell]\nsize = [{}, 4, {}]\n", 5 * cells, 4.5 * cells);
+    const int most = cells > 1 ? 1 : 0;
+    for (int c = -most; c <= most; ++c)
+      for (int a = -most; a <= most; ++a)
+        for (const int k : {0, 1})
+          text += fmt::format(
+              "[[vesicle]]\nshape = \"prolate\"\nreduced_volume = 0.9\nradius = {}\norder = 4\naxis = {}\ncenter = "
+              "[{}, "
+              "{}, {}]\n",
+              k == 0 ? 1 : 0.8, k == 0 ? "[1, 0, 0.2]" : "[0, 1, 1]", 5 * a + (k == 0 ? -1.3 : 1.4),
+              k == 0 ? 0.3 : -1.9, 4.5 * c + (k == 0 ? 1.7 : -0.6));
+    return text + tail;
+  };
+  const Desk one(scene_of(1)), nine(scene_of(3));
+  for (const Desk* desk : {&one, &nine})
+    REQUIRE((*desk)({"simulate", desk->file("s.toml"), "-o", desk->file("t.h5"), "-q"}).status == 0);
+  const auto picture = [](const Desk& desk, const char* time, const char* style, const char* copies) {
+    const Outcome outcome = desk({"render", desk.file("t.h5"), "--time", time, "-o", desk.file("still.png"), "--force",
+                                  "--style", style, "--set", std::string("view.copies=") + copies});
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    return render::read_png(desk / "still.png").image;
+  };
+  // Lines of the box, captions and ground are grey.
+  const auto colour = [](const unsigned char* pixel) {
+    return *std::max_element(pixel, pixel + 3) - *std::min_element(pixel, pixel + 3);
+  };
+  for (const char* style : {"opaque", "field"})
+    for (const char* time : {"0", "0.4"}) {
+      INFO(style << " at " << time);
+      const render::Image copied = picture(one, time, style, "[1, 0, 1]"),
+                          whole = picture(nine, time, style, "[0, 0, 0]"),
+                          alone = picture(one, time, style, "[0, 0, 0]");
+      int coloured = 0, different = 0, single = 0;
+      for (int y = 0; y < whole.height; ++y)
+        for (int x = 0; x < whole.width; ++x) {
+          constexpr int painted = 40;
+          if (x > 520 && y > 400) continue;  // the scale bar is of another vesicle
+          single += colour(alone.at(x, y)) > painted;
+          if (colour(copied.at(x, y)) <= painted && colour(whole.at(x, y)) <= painted) continue;
+          ++coloured;
+          for (int c = 0; c < 3; ++c)
+            if (std::abs(copied.at(x, y)[c] - whole.at(x, y)[c]) > 12) {
+              ++different;
+              break;
+            }
+        }
+      CHECK(coloured > 7 * single);
+      CHECK(single > 1000);
+      // Single precision moves edges by hundredths of a pixel.
+      CHECK(different < 0.003 * coloured);
+    }
+  const auto refused = [](const Desk& desk, const char* copies) {
+    return desk({"render", desk.file("t.h5"), "--time", "0", "--set", std::string("view.copies=") + copies}).err;
+  };
+  CHECK_THAT(refused(one, "[1, 1]"), Contains("'copies' must be three whole numbers"));
+  CHECK_THAT(refused(nine, "[10, 10, 10]"), Contains("166698 vesicles and copies are too many"));
+  const Desk open;
+  REQUIRE(open({"simulate", open.file("s.toml"), "-o", open.file("t.h5"), "-q", "--steps", "0"}).status == 0);
+  CHECK_THAT(refused(open, "[1, 0, 0]"), Contains("only a periodic [cell] has copies"));
 }
 
 TEST_CASE("two trajectories stand side by side, the shorter one at rest at its end", "[commands]") {
