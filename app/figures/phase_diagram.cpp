@@ -107,18 +107,10 @@ std::array<const Varied*, 2> axes_of(const std::vector<Varied>& all, const std::
 
 /// "viscosity contrast λ" for vesicle.viscosity_contrast.
 std::string label_of(const std::string& key) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> symbols{{{"viscosity_contrast", "λ"},
-                                                                                  {"reduced_volume", "ν"},
-                                                                                  {"bending_modulus", "κ_{b}"},
-                                                                                  {"density_difference", "Δρ"},
-                                                                                  {"rate", "γ̇"},
-                                                                                  {"radius", "R"}}};
-  const std::string word = last_word(key);
-  std::string label = word;
+  std::string label = last_word(key);
   std::replace(label.begin(), label.end(), '_', ' ');
-  for (const auto& [name, symbol] : symbols)
-    if (name == word) label.append(" ").append(symbol);
-  return label;
+  const std::string symbol = symbol_of(key);
+  return symbol.empty() ? label : label + " " + symbol;
 }
 
 constexpr std::array kinds{sim::AxisMotion::tank_treading, sim::AxisMotion::swinging, sim::AxisMotion::tumbling,

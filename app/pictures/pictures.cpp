@@ -4,6 +4,7 @@
 #include "app/pictures/instants.h"
 #include "app/pictures/overlays.h"
 
+#include "render/core/ground.h"
 #include "render/core/style.h"
 #include "render/overlay/layout.h"
 #include "render/overlay/panels.h"
@@ -93,13 +94,16 @@ render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& sta
 /// The panels of one picture on white or on nothing, all of one size.
 render::Image joined(const Production& production, const std::vector<render::Image>& parts) {
   render::Image whole(production.width, production.height, parts.front().channels);
+  // Between panels white shows, or on dark ground what is written on it in grey.
+  const render::Ground ground = render::ground_of(production.panels.front().view.background);
+  const render::Colour between = ground.dark() ? render::inks_on(ground).arrow : render::white;
   if (whole.channels == 3) std::fill(whole.pixels.begin(), whole.pixels.end(), std::uint8_t{255});
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const auto column = static_cast<int>(k) % production.columns, row = static_cast<int>(k) / production.columns;
     render::paste(whole, parts[k], column * parts[k].width, row * parts[k].height);
   }
   const std::vector<int>& size = production.panels.front().view.size;
-  render::draw_separators(whole, production.columns, production.rows, size[0], size[1]);
+  render::draw_separators(whole, production.columns, production.rows, size[0], size[1], between);
   return whole;
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -115,12 +116,14 @@ void draw(const render::Pen& pen, const Errors& errors) {
     all.insert(all.end(), of_contrast.begin(), of_contrast.end());
   const render::Panel panel{
       .x = render::decades(errors.gaps), .y = render::decades(all), .left = 66, .top = 16, .width = 276, .height = 232};
+  constexpr std::array markers{render::Marker::dot, render::Marker::square, render::Marker::triangle};
   std::vector<render::LegendEntry> legend;
   for (std::size_t c = 0; c < errors.values.size(); ++c) {
     const auto x = render::logarithms(errors.gaps), y = render::logarithms(errors.values[c]);
     render::draw_polyline(pen, panel, x, y, {render::curve_colour(c)});
-    render::draw_markers(pen, panel, x, y, render::Marker::dot, render::curve_colour(c), 1.5);
-    legend.push_back({fmt::format("λ = {}", errors.contrasts[c]), render::curve_colour(c), {}});
+    render::draw_markers(pen, panel, x, y, markers[c % markers.size()], render::curve_colour(c), 1.5);
+    legend.push_back(
+        {fmt::format("λ = {}", errors.contrasts[c]), render::curve_colour(c), markers[c % markers.size()]});
   }
   const render::Axes axes{.x = {.label = "gap / R_{0}", .scale = render::Scale::logarithmic},
                           .y = {.label = "relative error", .scale = render::Scale::logarithmic}};

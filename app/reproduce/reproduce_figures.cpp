@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -181,6 +182,8 @@ TextTable every_eighth(const TextTable& table) {
   return excerpt;
 }
 
+constexpr std::array spectrum_markers{render::Marker::dot, render::Marker::square};
+
 void draw_spectrum(const render::Pen& pen, const render::Panel& panel, const std::vector<double>& norms,
                    std::size_t colour) {
   std::vector<double> n, y;
@@ -190,7 +193,7 @@ void draw_spectrum(const render::Pen& pen, const render::Panel& panel, const std
       y.push_back(std::log10(norms[k]));
     }
   render::draw_polyline(pen, panel, n, y, {render::curve_colour(colour), 0.75});
-  render::draw_markers(pen, panel, n, y, render::Marker::dot, render::curve_colour(colour), 1.25);
+  render::draw_markers(pen, panel, n, y, spectrum_markers[colour], render::curve_colour(colour), 1.25);
 }
 
 void draw_spectra(const render::Pen& pen, const Spectra& s, const std::vector<render::ClosedCurve>& section) {
@@ -221,7 +224,8 @@ void draw_spectra(const render::Pen& pen, const Spectra& s, const std::vector<re
     render::draw_closed_curve(pen, inset, curve, -middle, {{0.25, 0.28, 0.33}, 0.75}, 0.12);
   }
   render::draw_legend(pen, panel,
-                      {{"position x", render::curve_colour(0), {}}, {"mean curvature H", render::curve_colour(1), {}}},
+                      {{"position", render::curve_colour(0), spectrum_markers[0]},
+                       {"mean curvature", render::curve_colour(1), spectrum_markers[1]}},
                       render::Corner::lower_left);
 }
 

@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace app {
 
@@ -195,6 +197,19 @@ std::string text_of(const std::vector<SceneDifference>& differences) {
   return text;
 }
 
+std::string symbol_of(const std::string& key) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> symbols{{{"viscosity_contrast", "λ"},
+                                                                                  {"reduced_volume", "ν"},
+                                                                                  {"bending_modulus", "κ_{b}"},
+                                                                                  {"density_difference", "Δρ"},
+                                                                                  {"rate", "γ̇"},
+                                                                                  {"radius", "R"}}};
+  const std::string word = key.substr(key.rfind('.') + 1);
+  for (const auto& [name, symbol] : symbols)
+    if (name == word) return std::string(symbol);
+  return {};
+}
+
 std::vector<std::string> distinct_names(const std::vector<sim::Scene>& scenes, const std::vector<std::string>& files) {
   constexpr std::size_t most_keys = 3;
   std::vector<std::string> names(scenes.size());
@@ -215,10 +230,27 @@ std::vector<std::string> distinct_names(const std::vector<sim::Scene>& scenes, c
         values.back()[d.key] = d.second;
       }
     }
+    const auto value_of = [&](std::size_t m, const std::string& key) {
+      const auto own = values[m].find(key);
+      return own == values[m].end() ? firsts[key] : own->second;
+    };
+    // Keys of the times and of numerics are no name where the others tell the scenes apart.
+    std::vector<std::string> of_physics;
+    for (const std::string& key : keys)
+      if (!key.starts_with("time.") && !key.starts_with("numerics.")) of_physics.push_back(key);
+    std::set<std::vector<std::string>> different;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      std::vector<std::string> own;
+      for (const std::string& key : of_physics) own.push_back(value_of(m, key));
+      different.insert(own);
+    }
+    if (different.size() == members.size()) keys = of_physics;
     const auto last_word = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
     const auto short_of = [&](const std::string& key) {
       const auto same = [&](const std::string& other) { return last_word(other) == last_word(key); };
-      return std::count_if(keys.begin(), keys.end(), same) > 1 ? key : last_word(key);
+      if (std::count_if(keys.begin(), keys.end(), same) > 1) return key;
+      const std::string symbol = symbol_of(key);
+      return symbol.empty() ? last_word(key) : symbol;
     };
     const auto as_read = [](const std::string& value) {
       return value.ends_with(".0") ? value.substr(0, value.size() - 2) : value;
@@ -227,9 +259,7 @@ std::vector<std::string> distinct_names(const std::vector<sim::Scene>& scenes, c
     for (std::size_t m = 0; m < members.size(); ++m) {
       std::string& name = names[members[m]];
       for (std::size_t i = 0; i < keys.size() && keys.size() <= most_keys; ++i) {
-        const auto own = values[m].find(keys[i]);
-        name += fmt::format("{}{} = {}", i > 0 ? ", " : "", short_of(keys[i]),
-                            as_read(own == values[m].end() ? firsts[keys[i]] : own->second));
+        name += fmt::format("{}{} = {}", i > 0 ? ", " : "", short_of(keys[i]), as_read(value_of(m, keys[i])));
       }
       ++times_used[name];
     }

@@ -23,9 +23,11 @@ std::vector<SceneDifference> physics_differences(const sim::Scene& first, const 
 bool continuable(const std::vector<SceneDifference>&);
 /// "time.step is 0.1 there and 0.2 here; ...", some of them.
 std::string text_of(const std::vector<SceneDifference>&);
+/// "λ" for vesicle.viscosity_contrast; empty where there is none.
+std::string symbol_of(const std::string& key);
 /// Names for a legend, one per scene: its title. Scenes with the same title are distinguished by the physics keys
-/// that differ, "viscosity_contrast = 3", and where that fails or needs more than three keys, by their files. A title
-/// shared by all is omitted.
+/// that differ, "λ = 3" or "order = 8", without those of times and numerics where the others are enough; where that
+/// fails or needs more than three keys, by their files. A title shared by all is omitted.
 std::vector<std::string> distinct_names(const std::vector<sim::Scene>&, const std::vector<std::string>& files);
 
 /// A value in TOML, with the shortest digits that give the same number.

@@ -40,7 +40,11 @@ Ground ground_of(std::string_view background, std::vector<std::string_view> name
 }
 
 Inks inks_on(const Ground& ground) {
-  if (!ground.dark()) return {};
+  if (!ground.dark()) {
+    Inks inks;
+    inks.rimmed = ground.transparent;
+    return inks;
+  }
   return {.text = {0.93, 0.94, 0.96},
           .soft = {0.66, 0.70, 0.76},
           .note = {0.98, 0.70, 0.40},

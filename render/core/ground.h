@@ -30,6 +30,7 @@ struct Inks {
   Colour arrow = arrow_colour;
   Colour flow_line = flow_line_colour;
   Colour paper = white;  ///< of boxes
+  bool rimmed = false;   ///< lines have the rim, too: nobody knows what will lie behind them
 };
 Inks inks_on(const Ground& ground);
 

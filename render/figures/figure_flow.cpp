@@ -187,11 +187,14 @@ void draw_lines(const Pen& pen, const FlowDrawing& d) {
   const double width = std::min(0.55 * pen.theme.stroke, 0.12 * d.spacing / d.length * unit);
   const double head = std::clamp(0.42 * d.spacing / d.length * unit, 2.2 * pen.theme.stroke, 4.2 * pen.theme.stroke);
   for (const Streamline& line : d.lines) draw_streamline(pen, panel, line, d.length, width, stroke);
-  for (const Streamline& line : d.lines) {
+  for (std::size_t l = 0; l < d.lines.size(); ++l) {
+    const Streamline& line = d.lines[l];
+    // Heads of neighbours would stand in columns: multiples of the golden ratio are never in step.
+    const double phase = 0.2 + 0.6 * std::fmod(static_cast<double>(l) / std::numbers::phi, 1.0);
     const auto place = [&](Eigen::Index k) {
       return Eigen::Vector2d(panel.page_x(line.points(k, 0) / d.length), panel.page_y(line.points(k, 1) / d.length));
     };
-    for (const Eigen::Index i : arrow_places(line, std::max(1.6 * d.length, 8 * d.spacing)))
+    for (const Eigen::Index i : arrow_places(line, std::max(1.6 * d.length, 8 * d.spacing), phase))
       if (i >= 1 && i + 1 < line.points.rows()) draw_head(pen, place(i), place(i + 1) - place(i - 1), head, stroke);
   }
 }

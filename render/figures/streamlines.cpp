@@ -240,7 +240,7 @@ std::vector<Streamline> streamlines(const PlaneFlow& flow, const Range& x, const
   return lines;
 }
 
-std::vector<Eigen::Index> arrow_places(const Streamline& line, double apart) {
+std::vector<Eigen::Index> arrow_places(const Streamline& line, double apart, double phase) {
   std::vector<double> along{0};
   for (Eigen::Index i = 1; i < line.points.rows(); ++i)
     along.push_back(along.back() + (line.points.row(i) - line.points.row(i - 1)).norm());
@@ -249,7 +249,7 @@ std::vector<Eigen::Index> arrow_places(const Streamline& line, double apart) {
   std::vector<Eigen::Index> places;
   if (total < 0.35 * apart) return places;
   for (int k = 0; k < std::max(count, 1); ++k) {
-    const double wanted = total * (k + 0.5) / std::max(count, 1);
+    const double wanted = total * (k + phase) / std::max(count, 1);
     const auto at = std::lower_bound(along.begin(), along.end(), wanted);
     places.push_back(std::clamp<Eigen::Index>(at - along.begin(), 1, line.points.rows() - 2));
   }

@@ -38,7 +38,7 @@ std::vector<Streamline> streamlines(const PlaneFlow& flow, const Range& x, const
                                     const StreamlineOptions& options, const std::vector<Eigen::Vector2d>& seeds = {});
 
 /// Positions of arrow heads on a line: away from its ends, at least one on every line that is long enough, about
-/// `apart` from each other. Indices of points.
-std::vector<Eigen::Index> arrow_places(const Streamline& line, double apart);
+/// `apart` from each other, the first after the share `phase` of that. Indices of points.
+std::vector<Eigen::Index> arrow_places(const Streamline& line, double apart, double phase = 0.5);
 
 }  // namespace render

@@ -107,20 +107,24 @@ void draw_flow_profile(Image& image, const Font& font, const Inks& inks, const F
           {0, static_cast<int>(top - 2.2 * s.text), static_cast<int>(2.4 * s.margin + 2 * width),
            static_cast<int>(bottom - top + 4 * s.text)},
           [&](cairo_t* cairo) {
-            set_colour(cairo, inks.soft);
-            cairo_set_line_width(cairo, 0.6 * s.line);
-            cairo_move_to(cairo, axis, top);
-            cairo_line_to(cairo, axis, bottom);
-            cairo_stroke(cairo);
-            for (std::size_t k = 0; k < profile.points.size(); ++k) {
-              const glm::dvec2 tip = place(profile.points[k]);
-              if (k % 4 == 0) arrow(cairo, {axis, tip.y}, tip, 0.8 * s.line);
-            }
-            set_colour(cairo, inks.text);
-            cairo_set_line_width(cairo, s.line);
-            cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
-            for (const glm::dvec2& p : profile.points) cairo_line_to(cairo, place(p).x, place(p).y);
-            cairo_stroke(cairo);
+            const auto lines = [&](const Colour& soft, const Colour& strong, double wider) {
+              set_colour(cairo, soft);
+              cairo_set_line_width(cairo, 0.6 * s.line + wider);
+              cairo_move_to(cairo, axis, top);
+              cairo_line_to(cairo, axis, bottom);
+              cairo_stroke(cairo);
+              for (std::size_t k = 0; k < profile.points.size(); ++k) {
+                const glm::dvec2 tip = place(profile.points[k]);
+                if (k % 4 == 0) arrow(cairo, {axis, tip.y}, tip, 0.8 * s.line + wider);
+              }
+              set_colour(cairo, strong);
+              cairo_set_line_width(cairo, s.line + wider);
+              cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+              for (const glm::dvec2& p : profile.points) cairo_line_to(cairo, place(p).x, place(p).y);
+              cairo_stroke(cairo);
+            };
+            if (inks.rimmed) lines(inks.rim, inks.rim, 1.2 * s.line);
+            lines(inks.soft, inks.text, 0);
             draw_text_on_picture(cairo, font, inks.rim, s.text, axis, top - 0.7 * s.text, "u_{∞}", Align::centre);
           });
 }

@@ -47,8 +47,13 @@ void draw_scale_bar(Image& image, const Font& font, const Inks& inks, const Capt
   const int top = static_cast<int>(box.bottom - 2.2 * s.small),
             height = static_cast<int>(std::ceil(2.2 * s.small + s.margin));
   draw_on(image, {0, top, image.width, height}, [&](cairo_t* cairo) {
-    set_colour(cairo, inks.text);
     cairo_rectangle(cairo, middle - layout.scale_length / 2, box.bottom - thickness, layout.scale_length, thickness);
+    if (inks.rimmed) {
+      set_colour(cairo, inks.rim);
+      cairo_set_line_width(cairo, thickness);
+      cairo_stroke_preserve(cairo);
+    }
+    set_colour(cairo, inks.text);
     cairo_fill(cairo);
     draw_text_on_picture(cairo, font, inks.rim, s.small, middle, box.bottom - thickness - 0.5 * s.small, captions.scale,
                          Align::centre);

@@ -1,6 +1,7 @@
 #include "render/overlay/panels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace render {
@@ -27,12 +28,16 @@ void paste(Image& into, const Image& part, int left, int top) {
                 into.at(left, top + y));
 }
 
-void draw_separators(Image& image, int columns, int rows, int width, int height) {
+void draw_separators(Image& image, int columns, int rows, int width, int height, const Colour& colour) {
+  const std::array<double, 3> parts{colour.r, colour.g, colour.b};
   const int thickness = std::max(1, static_cast<int>(std::lround(image.height / 540.0)));
+  const auto byte = [&](int c) -> std::uint8_t {
+    return c < 3 ? static_cast<std::uint8_t>(std::lround(255 * parts[static_cast<std::size_t>(c)])) : 0;
+  };
   const auto fill = [&](int x0, int y0, int x1, int y1) {
     for (int y = std::max(y0, 0); y < std::min(y1, image.height); ++y)
       for (int x = std::max(x0, 0); x < std::min(x1, image.width); ++x)
-        for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] = c < 3 ? 255 : 0;
+        for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] = byte(c);
   };
   for (int c = 1; c < columns; ++c) fill(c * width - thickness, 0, c * width + thickness, image.height);
   for (int r = 1; r < rows; ++r) fill(0, r * height - thickness, image.width, r * height + thickness);

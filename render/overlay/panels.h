@@ -1,6 +1,7 @@
 // A picture of several panels: their arrangement, and the lines between them.
 #pragma once
 
+#include "render/core/palette.h"
 #include "render/image/image.h"
 
 namespace render {
@@ -12,7 +13,7 @@ int panel_columns(int count, int width, int height);
 /// px.
 void paste(Image& into, const Image& part, int left, int top);
 
-/// Thin white lines, or empty ones where the picture has alpha, between its panels, each `width` x `height` px.
-void draw_separators(Image& image, int columns, int rows, int width, int height);
+/// Thin lines, empty where the picture has alpha, between its panels, each `width` x `height` px.
+void draw_separators(Image& image, int columns, int rows, int width, int height, const Colour& colour);
 
 }  // namespace render

@@ -190,7 +190,7 @@ TEST_CASE("curves of scenes of one title are told apart by what differs between 
   for (const char* kind : {"time-series", "phase"}) {
     REQUIRE(first.figure(kind, {second.trajectory}).status == 0);
     const std::string csv = support::read_file(first.folder / (std::string(kind) + ".csv"));
-    CHECK_THAT(csv, Contains("viscosity_contrast = 3,") && Contains("viscosity_contrast = 5,"));
+    CHECK_THAT(csv, Contains("λ = 3,") && Contains("λ = 5,"));
   }
   CHECK_THAT(first.figure("phase-diagram", {second.trajectory}).err,
              Contains("differ in two numbers; these differ in vesicle.viscosity_contrast only"));

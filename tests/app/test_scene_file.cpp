@@ -275,10 +275,12 @@ TEST_CASE("scenes of one title are told apart by the keys that differ, else by t
   using Names = std::vector<std::string>;
   CHECK(app::distinct_names({scene({"vesicle.viscosity_contrast=1"}), scene({"vesicle.viscosity_contrast=3"}),
                              scene({"vesicle.viscosity_contrast=5.5"})},
-                            {"a", "b", "c"}) ==
-        Names{"viscosity_contrast = 1", "viscosity_contrast = 3", "viscosity_contrast = 5.5"});
+                            {"a", "b", "c"}) == Names{"λ = 1", "λ = 3", "λ = 5.5"});
   CHECK(app::distinct_names({scene({"title=x"}), scene({"title=x", "flow.rate=2"}), scene({"title=y"})},
-                            {"a", "b", "c"}) == Names{"x, rate = 1", "x, rate = 2", "y"});
+                            {"a", "b", "c"}) == Names{"x, γ̇ = 1", "x, γ̇ = 2", "y"});
+  CHECK(app::distinct_names({scene({"time.end=3"}), scene({"vesicle.viscosity_contrast=3"})}, {"a", "b"}) ==
+        Names{"λ = 1", "λ = 3"});
+  CHECK(app::distinct_names({scene({"time.end=3"}), scene({"time.end=4"})}, {"a", "b"}) == Names{"end = 3", "end = 4"});
   CHECK(app::distinct_names({scene({}), scene({})}, {"a/t.h5", "b/t.h5"}) == Names{"a/t.h5", "b/t.h5"});
   CHECK(app::distinct_names({scene({}), scene({"vesicle.order=8"}), scene({"vesicle.order=8"})}, {"a", "b", "c"}) ==
         Names{"order = 12", "order = 8, b", "order = 8, c"});

@@ -202,11 +202,11 @@ class Controls {
   adapt(duration) {
     if (!this.moving) return;
     this.durations.push(duration);
-    if (this.durations.length < 6) return;
+    if (this.durations.length < (duration > 150 ? 2 : 6)) return;  // nobody waits for six slow frames
     const mean = this.durations.reduce((a, b) => a + b) / this.durations.length;
     document.body.dataset.rate = (1000 / mean).toFixed(1);  // frames a second
     this.durations = [];
-    if (mean > 45) this.quality = Math.max(0.35, this.quality * 0.75);
+    if (mean > 45) this.quality = Math.max(0.35, this.quality * Math.min(Math.max(Math.sqrt(45 / mean), 0.4), 0.75));
     else if (mean < 20) this.quality = Math.min(1, this.quality * 1.2);
   }
 
