@@ -322,7 +322,8 @@ TEST_CASE("a cell with its copies looks like a cell of as many cells, also while
   const std::string head = "[flow]\nkind = \"shear\"\n[time]\nend = 0.4\nstep = 0.2\n";
   const std::string tail =
       "[view]\nsize = [640, 480]\neye = [3, -50, 9]\ntarget = [0, 0, 0]\nzoom = 1.1\ncolours = [\"#d02020\", "
-      "\"#2040d0\"]\nbackground = \"white\"\nflow_arrows = false\nfield = \"mean-curvature\"\nfield_range = [0.5, "
+      "\"#2040d0\"]\nbackground = \"white\"\nflow_arrows = false\ncolour_bar = false\nfield = "
+      "\"mean-curvature\"\nfield_range = [0.5, "
       "1.5]\n";
   const auto scene_of = [&](double cells) {
     std::string text = head + fmt::format("[cell]\nsize = [{}, 4, {}]\n", 5 * cells, 4.5 * cells);
