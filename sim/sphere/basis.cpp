@@ -100,14 +100,14 @@ void Basis::Plan::fast_synthesis(const Lane* spectrum, int fields, TableRange ma
     for (int t = wanted.tables[d].first; t < wanted.tables[d].last; ++t)
       for (int f = 0; f < fields; ++f) {
         const auto row = [&](int at) {
-          const Lane* from = spectrum + (std::ptrdiff_t(at) * columns + (t - made.first) * fields + f) * depth;
-          return Eigen::Map<const Vector>(reinterpret_cast<const double*>(from), nlat);
+          return transform->latitudes_of(spectrum +
+                                         (std::ptrdiff_t(at) * columns + (t - made.first) * fields + f) * depth);
         };
         scratch.setZero();
         if (d == 0) scratch.col(0) = row(0) * longitude_norm(0);
         for (int m = 1; m <= p; ++m) {
           const double k = 0.5 * longitude_norm(m) * std::pow(m, d);
-          const auto c = row(m), s = row(p + m);
+          const Vector c = row(m), s = row(p + m);
           if (d == 0) scratch.col(m) = k * c, scratch.col(nlon - m) = -k * s;
           if (d == 1) scratch.col(m) = k * s, scratch.col(nlon - m) = k * c;
           if (d == 2) scratch.col(m) = -k * c, scratch.col(nlon - m) = k * s;
@@ -119,16 +119,15 @@ void Basis::Plan::fast_synthesis(const Lane* spectrum, int fields, TableRange ma
 void Basis::Plan::fast_analysis(const double* samples, int fields, Lane* spectrum) const {
   const int depth = transform->latitude_lanes();
   Matrix in(nlat, nlon), out(nlat, nlon);
-  std::fill_n(spectrum, transform->spectrum_size(fields), Lane{});
   for (int f = 0; f < fields; ++f) {
     in = Eigen::Map<const Matrix>(samples + std::ptrdiff_t(f) * nlat * nlon, nlat, nlon);
     fftw_execute_r2r(forward, in.data(), out.data());
-    const auto row = [&](int at) {
-      return Eigen::Map<Vector>(reinterpret_cast<double*>(spectrum + (std::ptrdiff_t(at) * fields + f) * depth), nlat);
+    const auto set_row = [&](int at, const Vector& values) {
+      transform->set_latitudes(values, spectrum + (std::ptrdiff_t(at) * fields + f) * depth);
     };
     for (int m = 0; m <= p; ++m) {
-      row(m) = longitude_norm(m) * out.col(m);
-      if (m > 0) row(p + m) = -longitude_norm(m) * out.col(nlon - m);
+      set_row(m, longitude_norm(m) * out.col(m));
+      if (m > 0) set_row(p + m, -longitude_norm(m) * out.col(nlon - m));
     }
   }
 }

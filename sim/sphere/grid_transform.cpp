@@ -64,26 +64,68 @@ void in_fours(int count, F&& f) {
   in_threes(count - at, [&](auto width, int from) { f(width, at + from); });
 }
 
-/// out[r] = sum_k a[r][k] b[k] for R rows of scalars and W vectors.
-template <int R, int W>
-void scalar_rows(const double* a, int depth, const Lane* b, std::ptrdiff_t b_row, Lane* const* out,
-                 std::ptrdiff_t out_at) {
-  Pack<W> x, y, z;
-  for (int k = 0; k < depth; ++k, b += b_row) {
-    x.add(a[k], b);
-    if constexpr (R > 1) y.add(a[depth + k], b);
-    if constexpr (R > 2) z.add(a[2 * depth + k], b);
-  }
-  x.store(out[0] + out_at);
-  if constexpr (R > 1) y.store(out[1] + out_at);
-  if constexpr (R > 2) z.store(out[2] + out_at);
+/// Calls f with widths of 1 to 3 as constants, none of which is 1 unless `count` is.
+template <class F>
+void in_pairs_or_threes(int count, F&& f) {
+  int at = 0;
+  for (; count - at > 4 || count - at == 3; at += 3) f(std::integral_constant<int, 3>{}, at);
+  for (; count - at >= 2; at += 2) f(std::integral_constant<int, 2>{}, at);
+  if (count > at) f(std::integral_constant<int, 1>{}, at);
 }
 
-/// Where the vectors of a group go on the first longitude; only some lanes of the last of a column are kept.
+/// ... of 2, and the rest.
+template <class F>
+void in_twos(int count, F&& f) {
+  int at = 0;
+  for (; at + 2 <= count; at += 2) f(std::integral_constant<int, 2>{}, at);
+  if (count > at) f(std::integral_constant<int, 1>{}, at);
+}
+
+Lane reversed(Lane v) { return __builtin_shufflevector(v, v, 3, 2, 1, 0); }
+
+/// Where sums of functions of the latitude go: their sum to a vector, and where that has a mirror the difference to it.
+struct Mirrors {
+  int vectors, mirrored, first;
+  bool odd;  ///< functions that are even in z have odd derivatives
+
+  template <int W>
+  void write(Lane* row, const Pack<W>& even, const Pack<W>& uneven) const {
+    (even + uneven).store(row + first);
+    const Pack<W> mirror = odd ? uneven - even : even - uneven;
+    Lane* const last = row + vectors - 1 - first;
+    if (first < mirrored) last[0] = reversed(mirror.a);
+    if constexpr (W > 1)
+      if (first + 1 < mirrored) last[-1] = reversed(mirror.b);
+    if constexpr (W > 2)
+      if (first + 2 < mirrored) last[-2] = reversed(mirror.c);
+  }
+};
+
+/// Sums over k of a[r][k] b[k] for R rows of scalars and W vectors, of even and odd k on their own.
+template <int R, int W>
+void mirrored_rows(const double* a, int depth, const Lane* b, std::ptrdiff_t b_row, Lane* const* out,
+                   std::ptrdiff_t out_at, const Mirrors mirrors) {
+  Pack<W> even, odd, other_even, other_odd;
+  int k = 0;
+  for (; k + 2 <= depth; k += 2, b += 2 * b_row) {
+    even.add(a[k], b);
+    if constexpr (R > 1) other_even.add(a[depth + k], b);
+    odd.add(a[k + 1], b + b_row);
+    if constexpr (R > 1) other_odd.add(a[depth + k + 1], b + b_row);
+  }
+  if (k < depth) {
+    even.add(a[k], b);
+    if constexpr (R > 1) other_even.add(a[depth + k], b);
+  }
+  mirrors.write(out[0] + out_at, even, odd);
+  if constexpr (R > 1) mirrors.write(out[1] + out_at, other_even, other_odd);
+}
+
+/// Where the vectors of a group go on the first longitude. `kept`: their lanes, if not all.
 template <int W>
 struct Columns {
   double* to[W];
-  int kept[W];
+  int kept;
   std::ptrdiff_t latitudes;
 
   template <bool whole>
@@ -94,9 +136,9 @@ struct Columns {
       if constexpr (W > 1) store_lane(to[1] + at, v.b);
       if constexpr (W > 2) store_lane(to[2] + at, v.c);
     } else {
-      store_some(to[0] + at, v.a, kept[0]);
-      if constexpr (W > 1) store_some(to[1] + at, v.b, kept[1]);
-      if constexpr (W > 2) store_some(to[2] + at, v.c, kept[2]);
+      store_some(to[0] + at, v.a, kept);
+      if constexpr (W > 1) store_some(to[1] + at, v.b, kept);
+      if constexpr (W > 2) store_some(to[2] + at, v.c, kept);
     }
   }
 };
@@ -149,12 +191,12 @@ void fold_orbits(const double* from, std::ptrdiff_t latitudes, std::ptrdiff_t lo
   if (4 * l == longitudes) write(l, member(l), member(longitudes - l), Lane{}, Lane{});
 }
 
-/// R scalar products of vectors of `count` lanes, rows of a following each other.
+/// R scalar products of vectors of `count` lanes, rows of a following each other: in turn with b and c.
 template <int R>
-Lane scalar_products(const Lane* a, const Lane* b, int count) {
+Lane scalar_products(const Lane* a, const Lane* b, const Lane* c, int count) {
   Lane sum[4] = {};
   for (int v = 0; v < count; ++v)
-    for (int r = 0; r < R; ++r) sum[r] += a[r * count + v] * b[v];
+    for (int r = 0; r < R; ++r) sum[r] += a[r * count + v] * (r % 2 == 0 ? b[v] : c[v]);
   return lane_sums(sum[0], sum[1], sum[2], sum[3]);
 }
 
@@ -165,22 +207,36 @@ GridTransform::GridTransform(int order, const GaussLegendre& rule, int longitude
       nlat_(int(rule.theta.size())),
       nlon_(longitudes),
       lanes_((nlat_ + lanes - 1) / lanes),
-      legendre_{LaneBuffer(std::size_t(legendre_count(p_)) * lanes_),
-                LaneBuffer(std::size_t(legendre_count(p_)) * lanes_),
-                LaneBuffer(std::size_t(legendre_count(p_)) * lanes_)},
-      weighted_(std::size_t(legendre_count(p_)) * lanes_) {
+      mirrored_(nlat_ / (2 * lanes)),
+      made_(lanes_ - mirrored_),
+      legendre_{LaneBuffer(std::size_t(legendre_count(p_)) * made_),
+                LaneBuffer(std::size_t(legendre_count(p_)) * made_),
+                LaneBuffer(std::size_t(legendre_count(p_)) * made_)},
+      weighted_(std::size_t(legendre_count(p_)) * made_) {
   const LegendreTable table = legendre_table(p_, rule.theta);
   const Matrix* const tables[] = {&table.value, &table.d1, &table.d2};
   for (Eigen::Index k = 0; k < legendre_count(p_); ++k)
-    for (int v = 0; v < lanes_; ++v)
+    for (int v = 0; v < made_; ++v)
       for (int e = 0; e < lanes; ++e) {
-        const int i = v * lanes + e;
-        for (int t = 0; t < 3; ++t) legendre_[t].get()[k * lanes_ + v][e] = i < nlat_ ? (*tables[t])(i, k) : 0;
-        weighted_.get()[k * lanes_ + v][e] = i < nlat_ ? table.value(i, k) * rule.weight[i] * (2 * pi / nlon_) : 0;
+        const int i = first_latitude(v) + e;
+        for (int t = 0; t < 3; ++t) legendre_[t].get()[k * made_ + v][e] = i < nlat_ ? (*tables[t])(i, k) : 0;
+        const bool own = i < nlat_ && (v + 1 == lanes_ || i < first_latitude(v + 1));
+        weighted_.get()[k * made_ + v][e] = own ? table.value(i, k) * rule.weight[i] * (2 * pi / nlon_) : 0;
       }
   if (!dense) return;
   for (int l = 0; l < orbits(); ++l)
     for (int d = 0; d < 3; ++d) append_fourier_row(fourier_[d], p_, l, nlon_, d);
+}
+
+Vector GridTransform::latitudes_of(const Lane* row) const {
+  Vector values(nlat_);
+  for (int v = 0; v < lanes_; ++v)
+    for (int e = 0; e < kept(); ++e) values[first_latitude(v) + e] = row[v][e];
+  return values;
+}
+
+void GridTransform::set_latitudes(const Vector& values, Lane* row) const {
+  for (int v = 0; v < lanes_; ++v) row[v] = load_some(values.data() + first_latitude(v), kept());
 }
 
 void GridTransform::along_latitudes(const double* coefficients, int degree, int fields, TableRange range,
@@ -199,12 +255,13 @@ void GridTransform::along_latitudes(const double* coefficients, int degree, int 
       out.get()[r] = spectrum + (sign > 0 ? m : p_ + m) * row + field * lanes_;
     }
     for (int t = range.first; t < range.last; ++t) {
-      const Lane* table = legendre_[t].get() + first_of(m) * lanes_;
+      const Lane* table = legendre_[t].get() + first_of(m) * made_;
       const std::ptrdiff_t start = std::ptrdiff_t(t - range.first) * fields * lanes_;
-      in_fours(lanes_, [=, this, &gathered, &out](auto width, int lane) {
-        in_threes(rows, [=, this, &gathered, &out](auto height, int r) {
-          scalar_rows<decltype(height)::value, decltype(width)::value>(gathered.get() + r * depth, depth, table + lane,
-                                                                       lanes_, out.get() + r, start + lane);
+      in_pairs_or_threes(made_, [=, this, &gathered, &out](auto width, int vector) {
+        const Mirrors mirrors{lanes_, mirrored_, vector, t == 1};
+        in_twos(rows, [=, this, &gathered, &out](auto height, int r) {
+          mirrored_rows<decltype(height)::value, decltype(width)::value>(
+              gathered.get() + r * depth, depth, table + vector, made_, out.get() + r, start, mirrors);
         });
       });
     }
@@ -213,7 +270,6 @@ void GridTransform::along_latitudes(const double* coefficients, int degree, int 
 
 void GridTransform::around(const Lane* spectrum, int degree, int fields, TableRange made, const Wanted& wanted) const {
   const std::ptrdiff_t row = std::ptrdiff_t(made.count()) * fields * lanes_;
-  const int last = nlat_ - (lanes_ - 1) * lanes;
   for (int d = 0; d < 3; ++d) {
     const TableRange range = wanted.tables[d];
     const Lane* first = spectrum + std::ptrdiff_t(range.first - made.first) * fields * lanes_;
@@ -221,17 +277,15 @@ void GridTransform::around(const Lane* spectrum, int degree, int fields, TableRa
       constexpr int W = decltype(group)::value;
       Columns<W> columns;
       columns.latitudes = nlat_;
-      bool whole = true;
+      columns.kept = kept();
       for (int w = 0; w < W; ++w) {
-        const int column = (at + w) / lanes_, lane = (at + w) % lanes_;
+        const int column = (at + w) / lanes_, vector = (at + w) % lanes_;
         columns.to[w] = wanted.out[d][range.first + column / fields] + std::ptrdiff_t(column % fields) * nlat_ * nlon_ +
-                        lane * lanes;
-        columns.kept[w] = lane == lanes_ - 1 ? last : lanes;
-        whole = whole && columns.kept[w] == lanes;
+                        first_latitude(vector);
       }
       Series series{first + at, first + at + p_ * row, row, degree, d == 0};
       if (d == 1) std::swap(series.cosines, series.sines);
-      if (whole)
+      if (columns.kept == lanes)
         write_orbits<true, W>(fourier_[d].data(), p_, series, nlon_, columns);
       else
         write_orbits<false, W>(fourier_[d].data(), p_, series, nlon_, columns);
@@ -240,7 +294,7 @@ void GridTransform::around(const Lane* spectrum, int degree, int fields, TableRa
 }
 
 void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectrum) const {
-  const int vectors = fields * lanes_, width = 2 * p_ + 1, last = nlat_ - (lanes_ - 1) * lanes;
+  const int vectors = fields * lanes_, width = 2 * p_ + 1;
   const int count = orbits();
   const LaneScratch folded(std::size_t(count) * 4 * 3);
   in_threes(vectors, [&](auto group, int at) {
@@ -248,12 +302,12 @@ void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectru
     Lane* const sums = folded.get();
     const std::ptrdiff_t kind = std::ptrdiff_t(count) * W;
     for (int w = 0; w < W; ++w) {
-      const int field = (at + w) / lanes_, lane = (at + w) % lanes_;
-      const double* from = samples + std::ptrdiff_t(field) * nlat_ * nlon_ + lane * lanes;
-      if (lane < lanes_ - 1 || last == lanes)
+      const int field = (at + w) / lanes_, vector = (at + w) % lanes_;
+      const double* from = samples + std::ptrdiff_t(field) * nlat_ * nlon_ + first_latitude(vector);
+      if (kept() == lanes)
         fold_orbits(from, nlat_, nlon_, std::integral_constant<int, lanes>{}, sums + w, W);
       else
-        fold_orbits(from, nlat_, nlon_, last, sums + w, W);
+        fold_orbits(from, nlat_, nlon_, kept(), sums + w, W);
     }
     for (int part = 0; part < 4; ++part) {
       const int start = part == 0 ? 0 : part == 2 ? 2 : 1;
@@ -281,15 +335,23 @@ void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectru
 
 void GridTransform::project(const Lane* spectrum, int fields, double* coefficients) const {
   const std::ptrdiff_t row = std::ptrdiff_t(fields) * lanes_, count = coefficient_count(p_);
+  const Scratch<Lane, 64> folded(std::size_t(2) * made_);
+  Lane *const even = folded.get(), *const odd = even + made_;  // in z
   for (int m = 0; m <= p_; ++m)
     for (const int sign : {1, -1}) {
       if (m == 0 && sign < 0) continue;
       for (int field = 0; field < fields; ++field) {
         const Lane* in = spectrum + (sign > 0 ? m : p_ + m) * row + field * lanes_;
+        for (int v = 0; v < mirrored_; ++v) {
+          const Lane mirror = reversed(in[lanes_ - 1 - v]);
+          even[v] = in[v] + mirror;
+          odd[v] = in[v] - mirror;
+        }
+        for (int v = mirrored_; v < made_; ++v) even[v] = odd[v] = in[v];
         double* out = coefficients + field * count;
         in_fours(p_ - m + 1, [&](auto height, int n) {
           constexpr int R = decltype(height)::value;
-          const Lane sums = scalar_products<R>(weighted_.get() + (first_of(m) + n) * lanes_, in, lanes_);
+          const Lane sums = scalar_products<R>(weighted_.get() + (first_of(m) + n) * made_, even, odd, made_);
           for (int r = 0; r < R; ++r) out[coefficient_index(m + n + r, sign * m)] = sums[r];
         });
       }

@@ -24,14 +24,19 @@ struct Wanted {
   double* out[3][3] = {};  ///< [derivative in phi][derivative in theta]
 };
 
-/// Plan for degree p on a grid. A spectrum is [row][table][field][latitude lanes], row m being the cosine of m phi and
-/// p + m the sine; lanes beyond the last latitude are 0.
+/// Plan for degree p on a grid. A spectrum is [row][table][field][latitude vectors], row m being the cosine of m phi
+/// and p + m the sine. Vectors are those of whole latitudes: the first ones from the north, as many from the south,
+/// whose lanes are mirrors of theirs, since P_nm is even or odd in z as n - m is, and one or two between them. These
+/// overlap their southern neighbours where latitudes do not fill them.
 class GridTransform {
  public:
   /// `dense`: with the tables of the Fourier half.
   GridTransform(int order, const GaussLegendre&, int longitudes, bool dense);
 
   int latitude_lanes() const { return lanes_; }
+  /// Between a row of vectors and the latitudes in their order.
+  Vector latitudes_of(const Lane* row) const;
+  void set_latitudes(const Vector& values, Lane* row) const;
   Eigen::Index spectrum_size(int columns) const { return Eigen::Index(2 * p_ + 1) * columns * lanes_; }
 
   /// Legendre synthesis of coefficients (column-major, (degree+1)^2 rows a field) with the functions of a range.
@@ -45,9 +50,17 @@ class GridTransform {
 
  private:
   int orbits() const { return nlon_ / 4 + 1; }
-  int p_, nlat_, nlon_, lanes_;
-  std::array<LaneBuffer, 3> legendre_;          ///< [m][n][lane]
-  LaneBuffer weighted_;                         ///< likewise, with weights
+  /// Where a vector of latitudes starts.
+  int first_latitude(int vector) const {
+    return vector <= mirrored_ ? vector * lanes : nlat_ - (lanes_ - vector) * lanes;
+  }
+  /// How many of its lanes are latitudes: all, but on the smallest grids.
+  int kept() const { return nlat_ < lanes ? nlat_ : lanes; }
+
+  int p_, nlat_, nlon_;
+  int lanes_, mirrored_, made_;                 ///< vectors: all, those of the north, and with the middle ones
+  std::array<LaneBuffer, 3> legendre_;          ///< [m][n][vector], those that are made
+  LaneBuffer weighted_;                         ///< likewise, with weights; 0 where another vector has the latitude
   std::array<std::vector<double>, 3> fourier_;  ///< [derivative][orbit][row]
   /// Of degree n = m among the rows of a Legendre table.
   Eigen::Index first_of(int m) const { return legendre_index(p_, m, m); }
