@@ -153,7 +153,8 @@ void place_scale_bar(Page& p) {
   const double length = captions.scale_length / p.frame.camera.half_width * p.width / 2;
   const double thickness = std::max(4 * p.s.unit, 1.5), text = p.ruler.width(p.s.small, captions.scale);
   if (!(length > 2 * thickness && length < 0.6 * p.width)) return;
-  const double middle = p.margin + length / 2, half = std::max(length, text) / 2;
+  // A name that is wider than its bar may reach into the margin, half of it at most.
+  const double half = std::max(length, text) / 2, middle = std::max(p.margin + length / 2, p.margin / 2 + half);
   // above the triad where it is too long to stand beside it
   const bool above = p.layout.triad && middle + half > p.layout.triad->left - p.gap;
   const double bottom = above ? p.layout.triad->top - p.gap : p.height - p.margin;
