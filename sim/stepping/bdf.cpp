@@ -66,11 +66,9 @@ Outlook outlook(const VesicleDynamics& v, std::span<const Level> levels, const F
   return o;
 }
 
-/// Residual of the least squares for w, relative: a tenth of what the step may err, or with fixed steps is expected to.
-/// It moves points along the membrane, the shape hardly; but w must be smooth in time.
-double sliding_tolerance(const Scene& scene, double step_error) {
-  constexpr double share = 0.1, tightest = 1e-8, loosest = 1e-4;
-  return std::clamp(share * (steps_adapt(scene.time) ? tolerance_of(scene.time) : step_error), tightest, loosest);
+/// Residual of the least squares for w, relative: w must be smooth in time.
+double sliding_tolerance(const Scene& scene) {
+  return steps_adapt(scene.time) ? std::min(0.1 * tolerance_of(scene.time), 1e-4) : 1e-8;
 }
 
 }  // namespace
@@ -143,8 +141,7 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
 
   double error = 0;  // of the step, as that of its record: the largest
   for (const Outlook& o : expected) error = std::max(error, o.error.value_or(0));
-  error /= motion_over(d, problem.dt);  // as a tolerance counts it
-  const double tolerance = solve_tolerance(s.scene, error);
+  const double tolerance = solve_tolerance(s.scene, error / motion_over(d, problem.dt));
 
   const Suspension suspension = freeze(s, d, time, at, guess);
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity, behind);
@@ -162,7 +159,7 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
     if (slides) {
       moved.sliding = sliding_velocity(
           {m.bases.field, m.geometry, m.body, moved.position, u, area_radius({v.area, v.volume}), v.frame.drift, c},
-          expected[k].sliding, sliding_tolerance(s.scene, error));
+          expected[k].sliding, sliding_tolerance(s.scene));
       moved.position.values += c * moved.sliding.values;
     }
     moved.frame = frame_of(m, motion.velocity, problem.flows, time);
