@@ -199,7 +199,7 @@ std::vector<int> Mesh::Plan::starts(const Points& points, const Eigen::Vector3d&
         const double start = periodic ? first - nodes[d] * std::floor(first / nodes[d]) : first;
         if (!(start >= 0 && start + (periodic ? 1 : width) <= nodes[d]))
           throw std::domain_error("a point lies outside the mesh");
-        all[std::size_t(3 * k + d)] = static_cast<int>(start);
+        all[3 * std::size_t(k) + std::size_t(d)] = static_cast<int>(start);
       }
     }
   });
@@ -225,7 +225,7 @@ MeshPoints Mesh::Plan::placed(const Points& points, const Eigen::Vector3d& middl
       for (int d = 0; d < 3; ++d) {
         const std::size_t slot = 3 * k + std::size_t(d);
         const double low = x[d] + (nodes[d] - 1) / 2.0 - width / 2.0;
-        result.start[slot] = starts[std::size_t(3 * point + d)];
+        result.start[slot] = starts[3 * std::size_t(point) + std::size_t(d)];
         double* w = &result.windows[slot * padded];
         double* s = slopes ? &result.slopes[slot * padded] : nullptr;
         window.evaluate(std::ceil(low) - low, w, s);
@@ -257,7 +257,7 @@ MeshPoints Mesh::place_sources(const Points& points, const Eigen::Vector3d& midd
   std::vector<int> wanted;
   for (int k = 0; k < static_cast<int>(points.cols()); ++k)
     if (ranks.count == 1 ||
-        (slab.planes > 0 && reaches(starts[std::size_t(3 * k + 2)], slab.first_plane, slab.first_plane + slab.planes)))
+        (slab.planes > 0 && reaches(starts[3 * std::size_t(k) + 2], slab.first_plane, slab.first_plane + slab.planes)))
       wanted.push_back(k);
   MeshPoints placed = m.placed(points, middle, starts, std::move(wanted), slopes);
   placed.first.push_back(0);
@@ -275,7 +275,7 @@ MeshPoints Mesh::place_targets(const Points& points, const Eigen::Vector3d& midd
   const std::vector<int> starts = m.starts(points, middle);
   std::vector<int> wanted, home;
   for (int k = 0; k < static_cast<int>(points.cols()); ++k) {
-    home.push_back(m.home(starts[std::size_t(3 * k + 2)], ranks.count));
+    home.push_back(m.home(starts[3 * std::size_t(k) + 2], ranks.count));
     if (home.back() == ranks.rank) wanted.push_back(k);
   }
   MeshPoints placed = m.placed(points, middle, starts, std::move(wanted), false);

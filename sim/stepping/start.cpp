@@ -58,7 +58,7 @@ void check_repulsion(const Model& s, const Dynamics& d) {
   double largest = 0;
   for (const AreaVolume& size : sizes(d)) largest = std::max(largest, area_radius(size));
   const double smallest = smallest_radius(sizes(d)), least = least_repulsion_range(smallest, largest);
-  if (const double range = repulsion_range(n, smallest); range < least)
+  if (const double range = repulsion_range(n, smallest); range < least * (1 - 1e-9))
     throw std::invalid_argument(
         fmt::format("numerics.repulsion_range = {:.3g} is too short to be sampled on vesicles of radius {}: it must be "
                     "at least {:.3g}",
