@@ -1,3 +1,4 @@
+#include "sim/stepping/start.h"
 #include "sim/suspension/interaction.h"
 #include "sim/suspension/repulsion.h"
 #include "surfaces.h"
@@ -101,4 +102,20 @@ TEST_CASE("no repulsion is made without strength, nor for a vesicle alone, nor b
   CHECK(repulsion_forces(plans, x, {0, 0.05}).empty());
   CHECK(repulsion_forces(plans, {x.data(), 1}, {1, 0.05}).empty());
   CHECK(repulsion_forces(plans, x, {1, 0.05})[0].values.norm() == 0);
+}
+
+TEST_CASE("a range of a thousandth of a radius is taken in any unit, and a shorter one is refused with the least") {
+  for (const double unit : {1e-6, 1.0, 1e6}) {
+    Scene scene = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
+    scene.vesicles.push_back(scene.vesicles[0]);
+    for (VesicleParameters& v : scene.vesicles) v.radius = unit;
+    scene.vesicles[1].center = {0, 0, 3 * unit};
+    scene.numerics.repulsion_strength = 1;
+    Plans plans;
+    scene.numerics.repulsion_range = 0.001 * unit;
+    CHECK_NOTHROW(initial_dynamics(make_model(scene, plans)));
+    scene.numerics.repulsion_range = 0.0009 * unit;
+    CHECK_THROWS_WITH(initial_dynamics(make_model(scene, plans)),
+                      Catch::Contains("repulsion_range") && Catch::Contains("at least"));
+  }
 }

@@ -173,6 +173,8 @@ TEST_CASE("a gap that closes on its floor ends the run at once, with the reason 
   const auto outcome = simulate(scene, options, observer);
   CHECK(outcome.end == SimulationEnd::failed);
   CHECK(outcome.reason.find("come within numerics.gap_floor = 0.25") != std::string::npos);
+  CHECK(outcome.reason.find("numerics.repulsion_strength = ") != std::string::npos);
+  CHECK(outcome.reason.find("(its range is 0.05)") != std::string::npos);
   CHECK(warnings == 0);
 }
 
