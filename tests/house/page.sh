@@ -4,25 +4,20 @@
 set -euo pipefail
 program=$1
 scene=$2
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || exit 77
+browse=$(dirname -- "${BASH_SOURCE[0]}")/browse.py
+command -v chromium chromium-browser google-chrome >/dev/null || exit 77
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$program" simulate "$scene" --set time.end=2 --set time.save_every=1 --set vesicle.order=10 -q -o "$folder/t.h5"
 nothing_over=(--set view.time_stamp=false --set view.caption=false --set view.scale_bar=false --set view.colour_bar=false)
-# The software OpenGL of the browser itself: what a machine without a screen has.
-browse() {
-  timeout 100 "$browser" --headless=new --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
-    --user-data-dir="$folder/profile" --hide-scrollbars --virtual-time-budget=5000 "$@" 2>"$folder/log" ||
-    { cat "$folder/log" >&2; exit 1; }
-}
 # Page and picture of the same settings: alike FILE WORD OPTIONS..., with the tolerances TOLERANCES.
 alike() {
   local trajectory=$1 words=$2
   shift 2
   "$program" export "$trajectory" --html "$folder/page.html" "${nothing_over[@]}" "$@" -q
   "$program" render "$trajectory" --time 2 --size 640x360 "${nothing_over[@]}" "$@" -q -o "$folder/own.png" --gl software
-  browse --window-size=640,360 --screenshot="$folder/page.png" "file://$folder/page.html#frame=2&bare$words"
+  "$browse" "file://$folder/page.html#frame=2&bare$words" 640x360 shot "$folder/page.png"
   "$program" compare "$folder/own.png" "$folder/page.png" --largest 255 --rmse 5 "${tolerances[@]}"
 }
 
@@ -44,10 +39,8 @@ alike "$folder/cell.h5" "" --set view.zoom=0.5 --set view.camera=three-quarter
 # On a screen and on a telephone: everything is in the window, no text lies on another, and fingers can hit the controls.
 "$program" export "$folder/t.h5" --html "$folder/page.html" --set view.field=tension -q
 cat >"$folder/look.js" <<'EOF'
-<script>
-setTimeout(() => {
+(() => {
   const faults = [], boxes = [], range = document.createRange();
-  if (document.body.dataset.drawn === undefined) faults.push("nothing was drawn");
   const add = (name, element, text) => {
     range.selectNodeContents(element);
     const { left, top, right, bottom } = (text ? range : element).getBoundingClientRect();
@@ -65,15 +58,12 @@ setTimeout(() => {
     add(control.id, control);
     if (innerWidth < 500 && control.getBoundingClientRect().height < 44) faults.push(`${control.id} is too low for a finger`);
   }
-  document.title = `faults: ${faults.join(", ") || "none"}`;
-}, 3000);
-</script>
+  return faults.join(", ") || "none";
+})()
 EOF
-cat "$folder/page.html" "$folder/look.js" >"$folder/looked.html"
 for words in style=opaque style=field style=opaque\&keys; do
-  for window in 1440,900/1 390,844/3 844,390/3; do
-    found=$(browse --window-size="${window%/*}" --force-device-scale-factor="${window#*/}" --dump-dom \
-      "file://$folder/looked.html#frame=2&$words" | grep -o '<title>[^<]*' | tail -1)
-    [ "$found" = "<title>faults: none" ] || { echo "$words at $window: $found" >&2; exit 1; }
+  for window in 1440x900@1 390x844@3 844x390@3; do
+    faults=$("$browse" "file://$folder/page.html#frame=2&$words" "$window" ask "$folder/look.js")
+    [ "$faults" = none ] || { echo "$words at $window: $faults" >&2; exit 1; }
   done
 done
