@@ -54,7 +54,7 @@ void add_iterations(Iterations& sums, sim::Plans& plans, const sim::Model& model
                     const sim::VesicleDynamics& v, const sim::Motion& before) {
   using sim::Preconditioner;
   const std::vector<sim::Coefficients> x{v.position}, tensions{v.motion.tension};
-  const std::vector<int> rates{v.upsampling};
+  const std::vector<double> rates{v.upsampling};
   const sim::Suspension s = sim::freeze_suspension(plans, model.materials, x, rates, {}, tensions);
   const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero());
   const std::vector<sim::Motion> zero{at_rest(v.position.order)}, last{before};
@@ -119,7 +119,7 @@ TextTable pair_table(sim::Plans& plans, const Effort& effort) {
     const sim::Model model = sim::make_model(scene, plans);
     const sim::Dynamics d = sim::initial_dynamics(model);
     const std::vector<sim::Coefficients> x{d.vesicles[0].position, d.vesicles[1].position};
-    const std::vector<int> rates{d.vesicles[0].upsampling, d.vesicles[1].upsampling};
+    const std::vector<double> rates{d.vesicles[0].upsampling, d.vesicles[1].upsampling};
     const sim::Suspension s = sim::freeze_suspension(plans, model.materials, x, rates, {});
     const auto r = sim::suspension_forcing(s, scene.flows, 0, sim::Vec3::Zero());
     const std::vector<sim::Motion> zero{d.vesicles[0].motion, d.vesicles[1].motion};

@@ -2,7 +2,7 @@
 
 namespace sim {
 
-Membrane freeze_membrane(Plans& plans, const Material& material, const Coefficients& position, int upsampling,
+Membrane freeze_membrane(Plans& plans, const Material& material, const Coefficients& position, double upsampling,
                          int source_order, const Coefficients& expected_tension, std::optional<PinnedTension> pinned) {
   Sheet sheet = freeze_sheet(plans, material, position, upsampling, expected_tension, pinned);
   LayerMatrices layers =

@@ -23,7 +23,7 @@ struct Membrane : Sheet {
 };
 
 /// Geometry and operators at x*, source_order 0 means p + 1; the rest as in freeze_sheet().
-Membrane freeze_membrane(Plans&, const Material&, const Coefficients& position, int upsampling, int source_order,
+Membrane freeze_membrane(Plans&, const Material&, const Coefficients& position, double upsampling, int source_order,
                          const Coefficients& expected_tension = {}, std::optional<PinnedTension> pinned = {});
 
 Vector packed(const Motion&);

@@ -47,9 +47,11 @@ SpectralInverse spectral_inverse(const Membrane& m, double c) {
 
 namespace {
 
+/// Degree by degree, of one field.
 void filter(Matrix& field, const std::vector<Matrix>& blocks, int order) {
+  const Vector before = field.topRows(coefficient_count(order));
   for (int n = 0; n <= order; ++n)
-    field.middleRows(n * n, 2 * n + 1) = (blocks[n] * field.middleRows(n * n, 2 * n + 1)).eval();
+    field.col(0).segment(n * n, 2 * n + 1).noalias() = blocks[n] * before.segment(n * n, 2 * n + 1);
 }
 
 }  // namespace

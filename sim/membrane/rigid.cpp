@@ -58,7 +58,7 @@ RigidMotion shape_motion(const RigidBody& b, const Geometry& g, const Matrix& u)
     along.col(3 + d).array() = arm.col(e).array() * g.n.col(f).array() - arm.col(f).array() * g.n.col(e).array();
   }
   const Matrix weighted = scaled_rows(g.dA, along), weighted_arm = scaled_rows(g.dA, arm);
-  const Eigen::Matrix3d second = weighted_arm.transpose() * arm, moment = weighted_arm.transpose() * u;
+  const Eigen::Matrix3d second = sum_of_products(weighted_arm, arm), moment = sum_of_products(weighted_arm, u);
   const Vec3 first = weighted_arm.colwise().sum().transpose();
   Eigen::Matrix<double, 6, 6> all;
   all << g.dA.sum() * Eigen::Matrix3d::Identity(), -cross_matrix(first), cross_matrix(first),
@@ -66,8 +66,8 @@ RigidMotion shape_motion(const RigidBody& b, const Geometry& g, const Matrix& u)
   Eigen::Matrix<double, 6, 1> carried;
   carried << u.transpose() * g.dA, moment(1, 2) - moment(2, 1), moment(2, 0) - moment(0, 2),
       moment(0, 1) - moment(1, 0);
-  const Eigen::Matrix<double, 6, 6> left = (1 - eta) * (weighted.transpose() * along) + eta * all;
-  const Eigen::Matrix<double, 6, 1> right = (1 - eta) * (weighted.transpose() * row_products(u, g.n)) + eta * carried;
+  const Eigen::Matrix<double, 6, 6> left = (1 - eta) * sum_of_products(weighted, along) + eta * all;
+  const Eigen::Matrix<double, 6, 1> right = (1 - eta) * sum_of_products(weighted, row_products(u, g.n)) + eta * carried;
   const Eigen::Matrix<double, 6, 1> r = left.ldlt().solve(right);
   return {r.head<3>(), r.tail<3>() / size, b.centre};
 }

@@ -1,13 +1,15 @@
 #include "sim/membrane/sheet.h"
 
+#include "sim/surface/dealias.h"
+
 #include <cmath>
 #include <numbers>
 
 namespace sim {
 
-Sheet freeze_sheet(Plans& plans, const Material& material, const Coefficients& position, int upsampling,
+Sheet freeze_sheet(Plans& plans, const Material& material, const Coefficients& position, double upsampling,
                    const Coefficients& expected_tension, std::optional<PinnedTension> pinned) {
-  const int p = position.order, q = upsampling * p;
+  const int p = position.order, q = upsampled(p, upsampling);
   const ForceBases bases{plans.basis(p, q), plans.basis(q, q)};
   Geometry g = geometry(bases.field, position);
   const double area = g.dA.sum(), radius = std::sqrt(area / (4 * std::numbers::pi));

@@ -51,7 +51,7 @@ struct Sheet {
 
 /// Geometry at x*; upsampling is the rate of Algorithm 1. Without an expected tension (order p or less) the tension is
 /// explicit in the position, as in the paper; a pinned one takes its place.
-Sheet freeze_sheet(Plans&, const Material&, const Coefficients& position, int upsampling,
+Sheet freeze_sheet(Plans&, const Material&, const Coefficients& position, double upsampling,
                    const Coefficients& expected_tension = {}, std::optional<PinnedTension> pinned = {});
 
 /// Velocity (3 fields) and tension (1 field) as coefficients of degree p; the highest degree of the tension is zero.

@@ -30,16 +30,15 @@ SurfaceWaves surface_waves(Plans& plans, const Coefficients& position) {
   const Basis& basis = plans.basis(p + 1, p + 1);
   const Geometry g = geometry(basis, resized(position, p + 1));
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(turned_metric(basis, g));
+  const Eigen::Matrix3d C =
+      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
   const RotationPlan& rotation = plans.rotation(p + 1);
   SurfaceWaves waves{basis, g.n, {}, {}};
   for (int n = 0; n <= p + 1; ++n) {
-    const auto& L = rotation.generators(n);
-    Matrix laplacian = Matrix::Zero(2 * n + 1, 2 * n + 1);  // with the sign that makes it positive
-    for (int a = 0; a < 3; ++a) {
-      const Vec3 e = axes.eigenvectors().col(a);
-      const Matrix turn = e[0] * L[0] + e[1] * L[1] + e[2] * L[2];
-      laplacian += std::max(axes.eigenvalues()[a], 0.0) * turn.transpose() * turn;
-    }
+    const auto& L = rotation.second_generators(n);
+    // The sign is the one that makes it positive.
+    const Matrix laplacian =
+        C(0, 0) * L[0] + C(1, 1) * L[1] + C(2, 2) * L[2] + C(1, 2) * L[3] + C(2, 0) * L[4] + C(0, 1) * L[5];
     const Eigen::SelfAdjointEigenSolver<Matrix> modes(laplacian);
     waves.modes.push_back(modes.eigenvectors());
     waves.numbers.push_back(modes.eigenvalues().cwiseMax(0).cwiseSqrt());

@@ -47,7 +47,8 @@ RotationPlan::RotationPlan(int order) : order_(order) {
       z(n - m, n + m) = -m;
     }
     const Matrix y = -quarter_[n].transpose() * z * quarter_[n];  // the quarter turn lays z on -y
-    generators_.push_back({z * y - y * z, y, z});                 // [L_y, L_z] = -L_x
+    const Matrix x = z * y - y * z;                               // [L_y, L_z] = -L_x
+    second_generators_.push_back({-x * x, -y * y, -z * z, -y * z - z * y, -z * x - x * z, -x * y - y * x});
   }
 }
 

@@ -13,8 +13,9 @@ class RotationPlan {
  public:
   explicit RotationPlan(int order);
   int order() const { return order_; }
-  /// The generators L = s x grad on the coefficients of degree n, one antisymmetric matrix per axis.
-  const std::array<Matrix, 3>& generators(int n) const { return generators_[n]; }
+  /// Of the generators L = s x grad, antisymmetric matrices on the coefficients of degree n: -L_a L_b - L_b L_a for (a,
+  /// b) = (y, z), (z, x), (x, y), after -L_a L_a for the axes x, y, z.
+  const std::array<Matrix, 6>& second_generators(int n) const { return second_generators_[n]; }
   /// Coefficients of f(Q s), field by field: (p+1)^2 x fields in and out.
   Matrix to_pole(const Matrix& coefficients, double theta, double phi) const;
   /// The transpose: maps functionals of the rotated coefficients to functionals of the original ones.
@@ -23,7 +24,7 @@ class RotationPlan {
  private:
   int order_;
   std::vector<Matrix> quarter_;  ///< per degree: coefficients of f(Rx(pi/2) s)
-  std::vector<std::array<Matrix, 3>> generators_;
+  std::vector<std::array<Matrix, 6>> second_generators_;
 };
 
 }  // namespace sim

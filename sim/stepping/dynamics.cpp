@@ -117,7 +117,7 @@ void check(const VesicleDynamics& v, const TrajectoryLayout& layout) {
     }
   };
   visit(v, look);
-  if (!(v.area > 0) || v.upsampling < 1 || v.upsampling > most_upsampling) refuse("a vesicle in it is impossible");
+  if (!(v.area > 0) || !(v.upsampling >= 1) || v.upsampling > most_upsampling) refuse("a vesicle in it is impossible");
 }
 
 /// All vesicles have taken the same steps.

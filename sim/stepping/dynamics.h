@@ -32,7 +32,7 @@ struct VesicleDynamics {
   double energy = 0;            ///< E/(8 pi kappa) of x_n
   double tail = 0;              ///< share of the mean curvature's spectrum in its last quarter of degrees
   double space_error = 0;       ///< estimated error of position that its degree leaves, a time, in area radii
-  int upsampling = 2;
+  double upsampling = 2;
   std::int64_t upsampling_due = 0;  ///< step of the next run of Algorithm 1
   double high_share = 0;            ///< high-degree share of x after the last relabelling, the least since
   std::int64_t relabelled = 0, labels_laid = 0;

@@ -77,7 +77,7 @@ void start_anew(const Model& s, double time, std::int64_t step, VesicleDynamics&
   v.frame = {rigid_part(body, flow), mean_gradient(body, flow)};
   v.motion.velocity = rigid_velocity(body, v.frame.motion);
   const NumericsParameters& n = s.scene.numerics;
-  v.upsampling = n.upsampling > 0 ? n.upsampling : upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
+  v.upsampling = n.upsampling > 0 ? double(n.upsampling) : upsampling_rate(s.plans, v.position, n.aliasing_tolerance);
   v.upsampling_due = step + upsampling_steps;
 }
 

@@ -11,8 +11,8 @@ namespace sim {
 
 namespace {
 
-std::vector<int> upsamplings(const Dynamics& d) {
-  std::vector<int> rates;
+std::vector<double> upsamplings(const Dynamics& d) {
+  std::vector<double> rates;
   for (const VesicleDynamics& v : d.vesicles) rates.push_back(v.upsampling);
   return rates;
 }

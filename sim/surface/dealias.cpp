@@ -3,6 +3,7 @@
 #include "sim/sphere/norms.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sim {
 
@@ -11,11 +12,14 @@ Coefficients mean_curvature(Plans& plans, const Coefficients& position, int grid
   return basis.analyze(Matrix(geometry(basis, position).H));
 }
 
-int upsampling_rate(Plans& plans, const Coefficients& position, double tolerance, int most) {
+int upsampled(int p, double rate) { return int(std::ceil(rate * p)); }
+
+double upsampling_rate(Plans& plans, const Coefficients& position, double tolerance, double most) {
+  constexpr double least = 2, step = 0.5;  // products of two fields are of degree 2p
   const int p = position.order;
-  Coefficients before = mean_curvature(plans, position, p);
-  for (int rate = 2; rate <= most; ++rate) {
-    Coefficients now = mean_curvature(plans, position, rate * p);
+  Coefficients before = mean_curvature(plans, position, upsampled(p, least - step));
+  for (double rate = least; rate <= most; rate += step) {
+    Coefficients now = mean_curvature(plans, position, upsampled(p, rate));
     if ((now.values - before.values).norm() <= tolerance * now.values.norm()) return rate;
     before = std::move(now);
   }

@@ -81,7 +81,7 @@ Measures measures(const Geometry& g) {
   // int y dV = (1/4) int y (y.n) dA, int y y^T dV = (1/5) int y y^T (y.n) dA
   const Vec3 offset = y.transpose() * height / (4 * m.volume);
   m.centroid = origin + offset;
-  m.moments = y.transpose() * height.asDiagonal() * y / 5;
+  m.moments = sum_of_products(scaled_rows(height, y), y) / 5;
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) m.moments(a, b) -= m.volume * offset[a] * offset[b];
   m.h_squared = g.dA.dot(g.H.cwiseAbs2());

@@ -1,6 +1,7 @@
 #include "sim/surface/labels.h"
 
 #include "sim/sphere/norms.h"
+#include "sim/sphere/point_sampler.h"
 #include "sim/surface/rows.h"
 
 #include <algorithm>
@@ -65,6 +66,12 @@ Matrix parameter_velocity(const FirstDerivatives& x, const Matrix& w) {
   rates.col(0) = (G * along_t - F * along_f) / determinant;
   rates.col(1) = (E * along_f - F * along_t) / determinant;
   return rates;
+}
+
+/// The same at a point, from the tangents there.
+Eigen::Vector2d tangential_rates(const Vec3& a, const Vec3& b, const Vec3& w) {
+  const double E = a.dot(a), F = a.dot(b), G = b.dot(b);
+  return Eigen::Vector2d(G * a.dot(w) - F * b.dot(w), E * b.dot(w) - F * a.dot(w)) / (E * G - F * F);
 }
 
 /// y' = f(time, y) over [from, to] in so many steps.
@@ -140,15 +147,13 @@ Coefficients LabelsBetween::at(double time) const {
 Matrix slid_points(const SlidingPath& path, const Matrix& parameters, double from, double to) {
   const auto velocity = [&](double time, const Matrix& points) -> Matrix {
     const Place place = at(path, time);
-    Matrix s = points.rowwise().normalized();
-    constexpr double near_pole = 1e-6;  // the angles have no directions at a pole itself
-    for (Eigen::Index k = 0; k < s.rows(); ++k)
-      if (std::hypot(s(k, 0), s(k, 1)) < near_pole) s.row(k) = Vec3(near_pole, 0, s(k, 2)).normalized().transpose();
-    const Matrix rates = parameter_velocity(sample_points_first(place.position, s), sample_points(place.sliding, s));
-    Matrix change(s.rows(), 3);
-    for (Eigen::Index k = 0; k < s.rows(); ++k) {
-      const SphereFrame frame = sphere_frame(s.row(k).transpose());
-      change.row(k) = -(rates(k, 0) * frame.e_theta + rates(k, 1) * frame.sin_theta * frame.e_phi).transpose();
+    const PointSampler position(place.position), sliding(place.sliding);
+    Matrix change(points.rows(), 3);
+    for (Eigen::Index k = 0; k < points.rows(); ++k) {
+      const Vec3 s = points.row(k).transpose();
+      const PointTangents x = position.tangents(s);
+      const Eigen::Vector2d rates = tangential_rates(x.a, x.b, sliding.position(s));
+      change.row(k) = -(rates[0] * x.e1 + rates[1] * x.e2).transpose();
     }
     return change;
   };

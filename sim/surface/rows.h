@@ -19,6 +19,13 @@ inline Matrix scaled_rows(const Vector& s, const Matrix& a) {
   return r;
 }
 
+/// The sum over the points of a b^T, for few columns: one dot product each, where a general product would pack its
+/// operands first.
+template <class A, class B>
+auto sum_of_products(const A& a, const B& b) {
+  return a.transpose().lazyProduct(b);
+}
+
 /// s a + t b, row by row.
 inline Matrix sum_of_rows(const Vector& s, const Matrix& a, const Vector& t, const Matrix& b) {
   Matrix r(a.rows(), a.cols());

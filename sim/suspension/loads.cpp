@@ -14,7 +14,7 @@ namespace {
 struct Bodies {
   std::vector<Material> materials;
   std::vector<Coefficients> positions;
-  std::vector<int> upsamplings;
+  std::vector<double> upsamplings;
   std::vector<std::optional<PinnedTension>> pinned;
   SuspensionOptions options;
 };

@@ -79,7 +79,7 @@ SuspensionOptions suspension_options(const NumericsParameters& n, double smalles
 }
 
 Suspension freeze_suspension(Plans& plans, std::span<const Material> materials, std::span<const Coefficients> positions,
-                             std::span<const int> upsamplings, const SuspensionOptions& options,
+                             std::span<const double> upsamplings, const SuspensionOptions& options,
                              std::span<const Coefficients> expected_tensions,
                              std::span<const std::optional<PinnedTension>> pinned) {
   const int n = int(positions.size());

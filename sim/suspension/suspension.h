@@ -42,7 +42,7 @@ double repulsion_range(const NumericsParameters&, double smallest_radius);
 /// Geometry and operators of all vesicles at x*, each on its rank (options.interaction.division); expected tensions:
 /// see freeze_membrane().
 Suspension freeze_suspension(Plans&, std::span<const Material>, std::span<const Coefficients> positions,
-                             std::span<const int> upsamplings, const SuspensionOptions&,
+                             std::span<const double> upsamplings, const SuspensionOptions&,
                              std::span<const Coefficients> expected_tensions = {},
                              std::span<const std::optional<PinnedTension>> pinned = {});
 
