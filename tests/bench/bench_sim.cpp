@@ -1,11 +1,13 @@
 // Cost of the parts of a step and of the whole. The limits: a step of one vesicle with viscosity contrast 10 takes at
 // most 5 ms at order 8 and 80 ms at order 16, on one core.
 #include "sim/suspension/placements.h"
+#include "tests/bench/ceilings.h"
 #include "tests/sim/surfaces.h"
 
 #include <benchmark/benchmark.h>
 
 #include <fftw3.h>
+#include <fmt/format.h>
 #include <omp.h>
 #include <sys/resource.h>
 
@@ -24,15 +26,18 @@ void assembly(benchmark::State& state, bool with_double) {
   const LayerPotentials layers(p);
   const Coefficients x = initial_position(prolate(p, 1));
   for (auto _ : state) benchmark::DoNotOptimize(layers.assemble(x, with_double));
+  bench::against_ceiling(state, bench::assembly_operations(p, with_double));
 }
 
-/// One product with S: 3 fields.
+/// One product with S: 3 fields; its six blocks are read.
 void apply(benchmark::State& state) {
   omp_set_num_threads(1);
   const int p = int(state.range(0));
   const Coefficients x = initial_position(prolate(p, 1));
   const LayerMatrices m = LayerPotentials(p).assemble(x, false);
   for (auto _ : state) benchmark::DoNotOptimize(m.single.apply(x));
+  const double numbers = double(m.single.values.size());
+  bench::against_ceiling(state, 3 * numbers, sizeof(double) * numbers);
 }
 
 /// Value and all derivatives of 3 fields of degree p on the 2p-grid.
@@ -41,6 +46,7 @@ void synthesis(benchmark::State& state) {
   const Basis basis(p, 2 * p);
   const Coefficients x = test::smooth_field(p, p, 3, 1);
   for (auto _ : state) benchmark::DoNotOptimize(basis.second(x));
+  bench::against_ceiling(state, bench::transform_operations(p, basis.latitudes(), 3, 3, 6));
 }
 
 void analysis(benchmark::State& state) {
@@ -48,6 +54,7 @@ void analysis(benchmark::State& state) {
   const Basis basis(p, 2 * p);
   const Matrix samples = basis.synthesize(test::smooth_field(p, p, 3, 1)).values;
   for (auto _ : state) benchmark::DoNotOptimize(basis.analyze(samples));
+  bench::against_ceiling(state, bench::transform_operations(p, basis.latitudes(), 3, 1, 1));
 }
 
 /// The longitude half of a synthesis of one field of degree p on the 2p-grid, as a dense product ...
@@ -81,6 +88,17 @@ void fourier_fftw(benchmark::State& state) {
     benchmark::DoNotOptimize(points.data());
   }
   fftw_destroy_plan(plan);
+}
+
+/// The ceilings themselves.
+void ceiling(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(bench::arithmetic_ceiling());
+  state.counters["GFLOPS"] = bench::arithmetic_ceiling() / 1e9;
+  for (const int size : {100, 400})
+    state.counters[fmt::format("product_{}_GFLOPS", size)] = bench::product_rate(size) / 1e9;
+  for (const auto& [name, kB] :
+       {std::pair{"read_16kB", 16}, {"read_300kB", 300}, {"read_4MB", 4096}, {"read_64MB", 65536}})
+    state.counters[fmt::format("{}_GB/s", name)] = bench::reading_ceiling(std::size_t(kB) * 1024) / 1e9;
 }
 
 /// The linear solve of a step of 0.1 from a zero guess, operators given.
@@ -140,6 +158,7 @@ void direct_sum(benchmark::State& state) {
   const Matrix targets = (Matrix::Random(count, 3).array() + 5).matrix();
   Matrix velocity = Matrix::Zero(count, 3);
   for (auto _ : state) add_direct_sum(s, densities, targets, velocity);
+  bench::against_ceiling(state, bench::pair_operations(state.range(0) != 0) * double(count * count));
   state.counters["pairs"] = benchmark::Counter(double(count * count), benchmark::Counter::kIsIterationInvariantRate);
 }
 
@@ -203,6 +222,7 @@ void suspension_step(benchmark::State& state, const char* method) {
 }  // namespace
 
 #define ORDERS DenseRange(8, 16, 4)->Arg(24)->Unit(unit)
+BENCHMARK(ceiling)->Iterations(1);
 BENCHMARK_CAPTURE(assembly, S, false)->ORDERS;
 BENCHMARK_CAPTURE(assembly, S_and_D, true)->ORDERS;
 BENCHMARK(apply)->ORDERS;
