@@ -11,15 +11,20 @@ namespace {
 /// squares fit of A by C between tangential projections is C = (15/7) (A - (trace C)/15), trace C = (3/2) trace A.
 Eigen::Matrix3d turned_metric(const Basis& basis, const Geometry& g) {
   Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
-  for (int j = 0; j < basis.longitudes(); ++j)
+  const Vector cos_theta = basis.theta().array().cos(), sin_theta = basis.theta().array().sin();
+  for (int j = 0; j < basis.longitudes(); ++j) {
+    const double cos_phi = std::cos(basis.phi()[j]), sin_phi = std::sin(basis.phi()[j]);
+    const Vec3 e_f(-sin_phi, cos_phi, 0);
     for (int i = 0; i < basis.latitudes(); ++i) {
       const int k = i + basis.latitudes() * j;
-      const auto [e_t, e_f, s] = sphere_frame(unit_vector(basis.theta()[i], basis.phi()[j]));
+      const double s = sin_theta[i];
+      const Vec3 e_t(cos_theta[i] * cos_phi, cos_theta[i] * sin_phi, -s);
       mean += basis.weights()[k] / (4 * std::numbers::pi) *
               (g.lap_tt[k] * e_f * e_f.transpose() -
                0.5 * s * g.lap_tf[k] * (e_t * e_f.transpose() + e_f * e_t.transpose()) +
                s * s * g.lap_ff[k] * e_t * e_t.transpose());
     }
+  }
   return 15.0 / 7 * (mean - mean.trace() / 10 * Eigen::Matrix3d::Identity());
 }
 

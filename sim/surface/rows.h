@@ -5,11 +5,9 @@
 
 namespace sim {
 
-/// a.b of every point.
-inline Vector row_products(const Matrix& a, const Matrix& b) {
-  return (a.col(0).array() * b.col(0).array() + a.col(1).array() * b.col(1).array() +
-          a.col(2).array() * b.col(2).array())
-      .matrix();
+/// a.b of every point: an expression, to be used or stored while a and b are there.
+inline auto row_products(const Matrix& a, const Matrix& b) {
+  return a.col(0).cwiseProduct(b.col(0)) + a.col(1).cwiseProduct(b.col(1)) + a.col(2).cwiseProduct(b.col(2));
 }
 
 /// Each row of a times the entry of s.
