@@ -141,6 +141,8 @@ class Recorder {
       m.vector("colour", render::linear(own));
       const render::Ground ground = render::ground_of(panel_.view.background);
       m.vector("contour", render::vector_of(render::outline_colour(own, ground, false)));
+      const render::Colour core{0.5 + 0.5 * own.r, 0.5 + 0.5 * own.g, 0.5 + 0.5 * own.b};
+      m.vector("cut_edge", render::vector_of(core));
       m.vector("ghost_contour", render::vector_of(render::outline_colour(own, ground, true)));
       m.number("radius", radii_[v]);
       m.raw("breaks", fmt::format("[{}]", fmt::join(s.breaks, ",")));
@@ -236,22 +238,24 @@ void write_camera(Members& page, const ViewPanel& panel, double time) {
   page.raw("views", list_of(views));
 }
 
-/// All but those that need a plane.
 void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
   std::vector<std::string> styles;
   for (const render::StyleRow& row : render::styles()) {
-    if (row.cut || (row.field && !panel.painting.field)) continue;
+    if (row.field && !panel.painting.field) continue;
     Members style;
     style.text("name", row.name);
     style.text("meaning", row.meaning);
     const bool dots = row.field && panel.painting.legend->mirrored && panel.view.sign_dots;
     const bool occluded = row.occluded && panel.view.occlusion > 0;
-    style.text("defines", render::body_defines(row, panel.view, true, false, tracers > 0, dots, occluded));
+    std::string defines = render::body_defines(row, panel.view, true, false, tracers > 0, dots, occluded);
+    if (row.cut) defines += "#define CUT_BY_SAMPLE\n";
+    style.text("defines", defines);
     style.flag("occluded", occluded);
     style.flag("tracers", row.tracers && panel.view.tracers && tracers > 0);
     style.flag("own_colour", row.own_colour);
     style.flag("see_through", row.see_through);
     style.flag("field", row.field);
+    style.flag("cut", row.cut);
     styles.push_back(style.whole());
   }
   page.raw("styles", list_of(styles));
@@ -310,6 +314,14 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.flag("full_detail", view.detail == "full");
   paint.flag("grid_lines", view.lines == "grid");
   page.raw("paint", paint.whole());
+}
+
+void write_cut(Members& page, const ViewPanel& panel) {
+  Members cut;
+  cut.vector("normal", sim::Vec3(panel.view.cut_normal.normalized()));
+  cut.number("offset", panel.view.cut_offset / panel.captions.scale_length);
+  cut.flag("common", panel.view.cut == "common");
+  page.raw("cut", cut.whole());
 }
 
 void write_legend(Members& page, const ViewPanel& panel) {
@@ -382,6 +394,7 @@ std::string page_text(const sim::TrajectoryReader& trajectory, const Settings& s
   const double cue = render::depth_cue_of(panel.view, first.vesicles.size());
   write_paint(page, panel.view, cue);
   write_styles(page, panel, tracers);
+  write_cut(page, panel);
   write_legend(page, panel);
   write_shaders(page, cue > 0);
   recorder.write(page);

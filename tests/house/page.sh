@@ -24,7 +24,7 @@ alike() {
 # Browsers average samples in sRGB, not in linear light: edges and thin lines are a shade darker. A line that is
 # missing, a light that has moved or a vesicle half a pixel off is beyond these.
 tolerances=(--channel 24 --share 0.02)
-for style in opaque ghost field; do
+for style in opaque ghost field cutaway; do
   alike "$folder/t.h5" "&style=$style" --set view.camera=three-quarter --set view.style=$style
 done
 # Small vesicles, with fewer lines, among arrows, rings of arrows seen end-on, and the edges of a cell: an arrow has some
@@ -61,7 +61,7 @@ cat >"$folder/look.js" <<'EOF'
   return faults.join(", ") || "none";
 })()
 EOF
-for words in style=opaque style=field style=opaque\&keys; do
+for words in style=opaque style=field style=opaque\&keys style=field\&keys style=cutaway; do
   for window in 1440x900@1 390x844@3 844x390@3; do
     faults=$("$browse" "file://$folder/page.html#frame=2&$words" "$window" ask "$folder/look.js")
     [ "$faults" = none ] || { echo "$words at $window: $faults" >&2; exit 1; }
