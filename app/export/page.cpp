@@ -76,7 +76,7 @@ struct VesicleSeries {
 class Recorder {
  public:
   Recorder(const ViewPanel& panel, const sim::TrajectoryReader& trajectory)
-      : panel_(panel), arrows_(1e-4), targets_(1e-4), radius_(panel.captions.scale_length) {
+      : panel_(panel), arrows_(1e-4), targets_(1e-4), profile_(1e-3), radius_(panel.captions.scale_length) {
     const sim::State first = trajectory.state(0);
     int order = 1, label_order = 1;
     for (std::int64_t k = 0; k < trajectory.count(); k += std::max<std::int64_t>(1, trajectory.count() / 20))
@@ -120,6 +120,7 @@ class Recorder {
       reach_ =
           std::max(reach_, std::abs(camera.picture_place(summary.point(k)).x) * camera.half_width / camera.half_height);
     add_arrows(camera, summary);
+    if (panel_.view.flow_profile) add_profile(camera, state.time);
     const sim::Vec3 target = render::to_sim(camera.target) / radius_;
     if (settings.scene.cell.size) targets_.add({target.data(), 3});
     times_.push_back(panel_.stamped ? marked(captions_of(panel_, state.time).time) : "");
@@ -159,6 +160,7 @@ class Recorder {
     page.flag("rests", rests_);
     page.raw("arrows", series(arrows_));
     page.raw("targets", series(targets_));
+    page.raw("profile", series(profile_));
     page.raw("arrow_counts", fmt::format("[{}]", fmt::join(arrow_counts_, ",")));
     page.text("bytes", base64(deflated(bytes)));
   }
@@ -195,10 +197,22 @@ class Recorder {
     arrows_.add(numbers);
   }
 
+  /// Velocities from the lowest point to the highest, shares of the fastest.
+  void add_profile(const render::Camera& camera, double time) {
+    std::vector<double> velocities;
+    double fastest = 0;
+    for (const glm::dvec2& point : profile_of(panel_, camera, time).points) {
+      velocities.push_back(point.y);
+      fastest = std::max(fastest, std::abs(point.y));
+    }
+    for (double& v : velocities) v = fastest > 0 ? v / fastest : 0;
+    profile_.add(velocities);
+  }
+
   const ViewPanel& panel_;
   std::vector<VesicleSeries> all_;
   std::vector<double> radii_;
-  PageSeries arrows_, targets_;
+  PageSeries arrows_, targets_, profile_;
   std::vector<std::size_t> arrow_counts_;
   std::vector<std::string> times_;
   bool rests_ = false;  ///< there is no background flow
@@ -304,6 +318,9 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.number("longest_arrow", render::longest_arrow);
   paint.number("weakest_arrow", render::weakest_arrow);
   paint.number("end_on_radius", render::end_on_radius);
+  paint.number("profile_width", render::profile_width);
+  paint.number("bodies_width", render::bodies_width);
+  paint.number("profile_reach", render::profile_reach);
   paint.vector("key_light", render::key_light);
   paint.number("occlusion", view.occlusion);
   paint.number("line_width", view.line_width);

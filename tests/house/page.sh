@@ -37,7 +37,7 @@ alike "$folder/t.h5" "" --set view.zoom=0.3 --set view.camera=along-flow
 alike "$folder/cell.h5" "" --set view.zoom=0.5 --set view.camera=three-quarter
 
 # On a screen and on a telephone: everything is in the window, no text lies on another, and fingers can hit the controls.
-"$program" export "$folder/t.h5" --html "$folder/page.html" --set view.field=tension -q
+"$program" export "$folder/t.h5" --html "$folder/page.html" --set view.field=tension --set view.flow_profile=true -q
 cat >"$folder/look.js" <<'EOF'
 (() => {
   const faults = [], boxes = [], range = document.createRange();
@@ -53,6 +53,9 @@ cat >"$folder/look.js" <<'EOF'
   for (const id of ["time", "parameters", "title"]) add(id, document.getElementById(id), true);
   add("scale", document.querySelector("#scale span"), true);
   for (const [k, part] of document.querySelectorAll("#bar figcaption, #bar i, #bar li").entries()) add(`part ${k} of the bar`, part, part.tagName !== "I");
+  const profile = document.querySelector("#profile g");
+  if (innerWidth > innerHeight !== profile.childElementCount > 0) faults.push("the profile is not in wide windows alone");
+  add("profile", profile);
   if (!document.getElementById("keys").hidden) add("keys", document.getElementById("keys"));
   for (const control of document.querySelectorAll("button, select, #scrub")) {
     add(control.id, control);
