@@ -7,6 +7,7 @@
 //   FIELD       colours of a map, unlit so that they can be read off its bar
 //   SIGN_DOTS   with FIELD: dots on the lower half of the map
 //   CUTAWAY     both sides, opened by a plane
+//   CUT_BY_SAMPLE   with CUTAWAY: where there are no clip distances, as in WebGL 2
 //   CONTOUR     the inner edge of the outline; with GHOST and CUTAWAY the whole outline
 //   TRACERS     tracer dots
 //   SPARSE      with GRID: vesicles so small that their lines fade to a few, or to none
@@ -14,6 +15,9 @@
 //   DEPTH_CUE   fades into the ground with the distance
 in vec3 v_eye, v_normal, v_label;
 flat in vec3 v_paint;  // linear
+#ifdef CUT_BY_SAMPLE
+in float v_cut;
+#endif
 out vec4 f_colour;
 #ifdef GHOST
 uniform float u_opacity;  // seen straight on
@@ -214,6 +218,9 @@ void main() {
   alpha = mix(alpha, max(alpha, front ? 1.0 : drawn), contour);
   alpha *= mix(1.0, smoothstep(-0.3, 1.3, to_contour), turns_over);  // the edge of a polygon: a shade between
 #endif
+#endif
+#ifdef CUT_BY_SAMPLE
+  if (v_cut > 0.0) discard;  // last: derivatives need the neighbours
 #endif
 #ifdef GHOST
 #ifdef DEPTH_CUE

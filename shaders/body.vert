@@ -19,6 +19,9 @@ out float v_scalar;
 #endif
 #ifdef CUTAWAY
 layout(location = 8) in vec4 a_cut;  // the half space a_cut . (x, 1) > 0 is taken away
+#ifdef CUT_BY_SAMPLE
+out float v_cut;
+#endif
 #endif
 #ifdef CONTOUR
 layout(location = 10) in vec3 a_contour;  // sRGB
@@ -57,7 +60,12 @@ void main() {
   v_scalar = a_scalar;
 #endif
 #ifdef CUTAWAY
-  gl_ClipDistance[0] = -dot(a_cut, vec4(a_position, 1.0));
+  float cut = dot(a_cut, vec4(a_position, 1.0));
+#ifdef CUT_BY_SAMPLE
+  v_cut = cut;
+#else
+  gl_ClipDistance[0] = -cut;
+#endif
 #endif
 #ifdef CONTOUR
   v_contour = a_contour;

@@ -76,7 +76,7 @@ struct VesicleSeries {
 class Recorder {
  public:
   Recorder(const ViewPanel& panel, const sim::TrajectoryReader& trajectory)
-      : panel_(panel), arrows_(1e-4), targets_(1e-4), radius_(panel.captions.scale_length) {
+      : panel_(panel), arrows_(1e-4), targets_(1e-4), profile_(1e-3), radius_(panel.captions.scale_length) {
     const sim::State first = trajectory.state(0);
     int order = 1, label_order = 1;
     for (std::int64_t k = 0; k < trajectory.count(); k += std::max<std::int64_t>(1, trajectory.count() / 20))
@@ -120,6 +120,7 @@ class Recorder {
       reach_ =
           std::max(reach_, std::abs(camera.picture_place(summary.point(k)).x) * camera.half_width / camera.half_height);
     add_arrows(camera, summary);
+    if (panel_.view.flow_profile) add_profile(camera, state.time);
     const sim::Vec3 target = render::to_sim(camera.target) / radius_;
     if (settings.scene.cell.size) targets_.add({target.data(), 3});
     times_.push_back(panel_.stamped ? marked(captions_of(panel_, state.time).time) : "");
@@ -141,6 +142,8 @@ class Recorder {
       m.vector("colour", render::linear(own));
       const render::Ground ground = render::ground_of(panel_.view.background);
       m.vector("contour", render::vector_of(render::outline_colour(own, ground, false)));
+      const render::Colour core{0.5 + 0.5 * own.r, 0.5 + 0.5 * own.g, 0.5 + 0.5 * own.b};
+      m.vector("cut_edge", render::vector_of(core));
       m.vector("ghost_contour", render::vector_of(render::outline_colour(own, ground, true)));
       m.number("radius", radii_[v]);
       m.raw("breaks", fmt::format("[{}]", fmt::join(s.breaks, ",")));
@@ -157,6 +160,7 @@ class Recorder {
     page.flag("rests", rests_);
     page.raw("arrows", series(arrows_));
     page.raw("targets", series(targets_));
+    page.raw("profile", series(profile_));
     page.raw("arrow_counts", fmt::format("[{}]", fmt::join(arrow_counts_, ",")));
     page.text("bytes", base64(deflated(bytes)));
   }
@@ -193,10 +197,22 @@ class Recorder {
     arrows_.add(numbers);
   }
 
+  /// Velocities from the lowest point to the highest, shares of the fastest.
+  void add_profile(const render::Camera& camera, double time) {
+    std::vector<double> velocities;
+    double fastest = 0;
+    for (const glm::dvec2& point : profile_of(panel_, camera, time).points) {
+      velocities.push_back(point.y);
+      fastest = std::max(fastest, std::abs(point.y));
+    }
+    for (double& v : velocities) v = fastest > 0 ? v / fastest : 0;
+    profile_.add(velocities);
+  }
+
   const ViewPanel& panel_;
   std::vector<VesicleSeries> all_;
   std::vector<double> radii_;
-  PageSeries arrows_, targets_;
+  PageSeries arrows_, targets_, profile_;
   std::vector<std::size_t> arrow_counts_;
   std::vector<std::string> times_;
   bool rests_ = false;  ///< there is no background flow
@@ -236,22 +252,24 @@ void write_camera(Members& page, const ViewPanel& panel, double time) {
   page.raw("views", list_of(views));
 }
 
-/// All but those that need a plane.
 void write_styles(Members& page, const ViewPanel& panel, std::size_t tracers) {
   std::vector<std::string> styles;
   for (const render::StyleRow& row : render::styles()) {
-    if (row.cut || (row.field && !panel.painting.field)) continue;
+    if (row.field && !panel.painting.field) continue;
     Members style;
     style.text("name", row.name);
     style.text("meaning", row.meaning);
     const bool dots = row.field && panel.painting.legend->mirrored && panel.view.sign_dots;
     const bool occluded = row.occluded && panel.view.occlusion > 0;
-    style.text("defines", render::body_defines(row, panel.view, true, false, tracers > 0, dots, occluded));
+    std::string defines = render::body_defines(row, panel.view, true, false, tracers > 0, dots, occluded);
+    if (row.cut) defines += "#define CUT_BY_SAMPLE\n";
+    style.text("defines", defines);
     style.flag("occluded", occluded);
     style.flag("tracers", row.tracers && panel.view.tracers && tracers > 0);
     style.flag("own_colour", row.own_colour);
     style.flag("see_through", row.see_through);
     style.flag("field", row.field);
+    style.flag("cut", row.cut);
     styles.push_back(style.whole());
   }
   page.raw("styles", list_of(styles));
@@ -300,6 +318,9 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.number("longest_arrow", render::longest_arrow);
   paint.number("weakest_arrow", render::weakest_arrow);
   paint.number("end_on_radius", render::end_on_radius);
+  paint.number("profile_width", render::profile_width);
+  paint.number("bodies_width", render::bodies_width);
+  paint.number("profile_reach", render::profile_reach);
   paint.vector("key_light", render::key_light);
   paint.number("occlusion", view.occlusion);
   paint.number("line_width", view.line_width);
@@ -310,6 +331,14 @@ void write_paint(Members& page, const render::ViewParameters& view, double cue) 
   paint.flag("full_detail", view.detail == "full");
   paint.flag("grid_lines", view.lines == "grid");
   page.raw("paint", paint.whole());
+}
+
+void write_cut(Members& page, const ViewPanel& panel) {
+  Members cut;
+  cut.vector("normal", sim::Vec3(panel.view.cut_normal.normalized()));
+  cut.number("offset", panel.view.cut_offset / panel.captions.scale_length);
+  cut.flag("common", panel.view.cut == "common");
+  page.raw("cut", cut.whole());
 }
 
 void write_legend(Members& page, const ViewPanel& panel) {
@@ -382,6 +411,7 @@ std::string page_text(const sim::TrajectoryReader& trajectory, const Settings& s
   const double cue = render::depth_cue_of(panel.view, first.vesicles.size());
   write_paint(page, panel.view, cue);
   write_styles(page, panel, tracers);
+  write_cut(page, panel);
   write_legend(page, panel);
   write_shaders(page, cue > 0);
   recorder.write(page);

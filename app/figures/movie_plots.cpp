@@ -59,13 +59,18 @@ std::optional<PlotStrip> movie_plots(const std::vector<FigureSource>& sources) {
     throw std::invalid_argument(
         fmt::format("a picture of {} x {} has no room for the {} plots of view.plots", width, height, count));
   }
+  // Marks along the curves would be taken for those of the time, which have their shapes.
+  render::PlacedPlots unmarked = strip.placed;
+  for (render::PlacedPlot& p : unmarked.plots)
+    for (render::Curve& curve : p.plot.curves)
+      if (curve.phase >= 0) curve.marker.reset();
   strip.ground = render::Image(strip.place.width, strip.place.height, 3);
   const render::Font font = render::caption_font();
   render::draw_on(strip.ground, {0, 0, strip.place.width, strip.place.height}, [&](cairo_t* cairo) {
     render::set_colour(cairo, page.theme.ground);
     cairo_paint(cairo);
     cairo_scale(cairo, strip.pixels, strip.pixels);
-    render::draw_plots({cairo, font, strip.placed.theme}, strip.placed);
+    render::draw_plots({cairo, font, strip.placed.theme}, unmarked);
   });
   return strip;
 }

@@ -69,7 +69,7 @@ std::vector<render::Plot> phase_plots(const std::vector<FigureSource>& sources, 
   plot.x = {.label = {}, .scale = x.scale, .grid = true};
   plot.y = {.label = {}, .scale = y.scale, .grid = true};
   for (const FigureSource& source : sources) {
-    const std::vector<render::Series> series = series_of(source, scales, {&x, &y}, true);
+    const std::vector<render::Series> series = series_of(source, scales, {&x, &y}, true, Instants::dense);
     const render::Series &a = series[0], &b = series[1];
     plot.x.label = a.axis;
     plot.y.label = b.axis;

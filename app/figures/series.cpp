@@ -1,6 +1,7 @@
 #include "app/figures/series.h"
 
 #include "app/figures/samples.h"
+#include "app/pictures/instants.h"
 
 #include "sim/measures/diagnostics.h"
 #include "sim/measures/motion.h"
@@ -23,13 +24,31 @@ struct Measurements {
   std::vector<sim::StepRecord> steps;
 };
 
-/// All saved states, with angles continued from state to state.
-void measure_states(const FigureSource& source, Needs needs, Measurements& m) {
+/// States between two saved ones, for measures of shapes alone: flow and forces are not interpolated, and errors would
+/// be those of the interpolation.
+int between_saved(const FigureSource& source, const std::vector<const QuantityRow*>& rows, Instants instants) {
+  const auto of_shapes = [](const QuantityRow* row) {
+    return row->needs == Needs::shape && row->scale != render::Scale::logarithmic &&
+           !std::holds_alternative<StepCurves>(row->curves);
+  };
+  constexpr std::int64_t enough = 400;  // points of a curve, that its corners are not seen
+  const std::int64_t intervals = source.trajectory.count() - 1;
+  if (instants == Instants::saved || intervals < 1 || !std::all_of(rows.begin(), rows.end(), of_shapes)) return 0;
+  return static_cast<int>(std::min<std::int64_t>((enough - 1) / intervals, 19));
+}
+
+/// All saved states, and so many between two of them, with angles continued from state to state.
+void measure_states(const FigureSource& source, Needs needs, int between, Measurements& m) {
   const sim::TrajectoryReader& trajectory = source.trajectory;
   sim::Plans plans;
   std::vector<sim::VesicleMeasures> initial;
-  for (std::int64_t k = 0; k < trajectory.count(); ++k) {
-    const sim::State state = trajectory.state(k);
+  const std::int64_t pieces = between + 1, count = (trajectory.count() - 1) * pieces + 1;
+  for (std::int64_t k = 0; k < count; ++k) {
+    const std::int64_t saved = k / pieces;
+    const double share = static_cast<double>(k % pieces) / static_cast<double>(pieces);
+    const sim::State state =
+        share > 0 ? state_at(trajectory, (1 - share) * trajectory.time(saved) + share * trajectory.time(saved + 1))
+                  : trajectory.state(saved);
     m.times.push_back(state.time);
     if (k == 0)
       for (const sim::VesicleState& v : state.vesicles) initial.push_back(sim::measure(plans, v, 1, 1));
@@ -42,13 +61,15 @@ void measure_states(const FigureSource& source, Needs needs, Measurements& m) {
   }
 }
 
-Measurements measurements_of(const FigureSource& source, const std::vector<const QuantityRow*>& rows) {
+Measurements measurements_of(const FigureSource& source, const std::vector<const QuantityRow*>& rows,
+                             Instants instants) {
   const auto of_states = [](const QuantityRow* row) { return !std::holds_alternative<StepCurves>(row->curves); };
   Measurements m;
   m.length = length_of(source.trajectory);
   Needs needs = Needs::shape;
   for (const QuantityRow* row : rows) needs = std::max(needs, row->needs);
-  if (std::any_of(rows.begin(), rows.end(), of_states)) measure_states(source, needs, m);
+  if (std::any_of(rows.begin(), rows.end(), of_states))
+    measure_states(source, needs, between_saved(source, rows, instants), m);
   if (!std::all_of(rows.begin(), rows.end(), of_states)) m.steps = source.trajectory.steps();
   return m;
 }
@@ -133,8 +154,8 @@ SharedScales shared_scales(const std::vector<FigureSource>& sources) {
 }
 
 std::vector<render::Series> series_of(const FigureSource& source, const SharedScales& scales,
-                                      const std::vector<const QuantityRow*>& rows, bool single) {
-  const Measurements measurements = measurements_of(source, rows);
+                                      const std::vector<const QuantityRow*>& rows, bool single, Instants instants) {
+  const Measurements measurements = measurements_of(source, rows, instants);
   const double factor = time_factor(source, scales);
   std::vector<render::Series> all;
   for (const QuantityRow* row : rows) {

@@ -32,9 +32,13 @@ struct SharedScales {
 };
 SharedScales shared_scales(const std::vector<FigureSource>&);
 
+/// Where quantities of shapes are measured: in the saved states, or in as many between them, interpolated as stills
+/// are, as a smooth curve takes.
+enum class Instants { saved, dense };
+
 /// Series of one trajectory for each of the quantities, one after the other: one for each vesicle and curve; of the
 /// first vesicle and curve only, without names, when `single`. States are measured once for all.
 std::vector<render::Series> series_of(const FigureSource&, const SharedScales&, const std::vector<const QuantityRow*>&,
-                                      bool single);
+                                      bool single, Instants instants = Instants::saved);
 
 }  // namespace app

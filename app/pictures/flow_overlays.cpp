@@ -1,13 +1,18 @@
 #include "app/pictures/flow_overlays.h"
 
 #include "app/pictures/flow_picture.h"
+#include "app/pictures/instants.h"
 
+#include "render/core/paint.h"
 #include "render/core/places.h"
+#include "render/draw/clearance.h"
 #include "render/overlay/layout.h"
 #include "render/scene/arrow_net.h"
+#include "render/scene/detail.h"
 #include "sim/membrane/flows.h"
 
 #include <algorithm>
+#include <array>
 
 namespace app {
 
@@ -41,22 +46,31 @@ FlowRequest request_of(sim::Plans& plans, const ViewPanel& p, const sim::State& 
   return request;
 }
 
-/// The parts of a line that are clear of what lies over the picture; heads: indices of its points.
+/// The parts of a line that are in the picture and clear of what lies over it, none shorter than `shortest`; heads:
+/// indices of its points.
 void add_clear_parts(const render::Streamline& line, const std::vector<Eigen::Index>& heads,
                      const render::CutPlane& plane, const render::Camera& camera,
-                     const std::vector<render::Box>& overlays, const std::vector<int>& size,
+                     const std::vector<render::Box>& overlays, const std::vector<int>& size, double shortest,
                      std::vector<render::FlowLines::Line>& parts) {
   render::FlowLines::Line part;
+  double seen = 0;  // of its length: what is beyond the edge of the picture makes no stub longer
+  bool was_in = false;
   const auto finish = [&] {
-    if (part.points.size() > 1) parts.push_back(part);
+    if (part.points.size() > 1 && seen >= shortest) parts.push_back(part);
     part = {};
+    seen = 0;
+    was_in = false;
   };
   for (Eigen::Index k = 0; k < line.points.rows(); ++k) {
     const sim::Vec3 point = plane.origin + line.points(k, 0) * plane.right + line.points(k, 1) * plane.up;
-    if (render::clear_of(overlays, camera.picture_place(render::to_glm(point)), size) < 0.2) {
+    const glm::dvec2 place = camera.picture_place(render::to_glm(point));
+    if (render::clear_of(overlays, place, size) < 0.2) {
       finish();
       continue;
     }
+    const bool in = std::max(std::abs(place.x), std::abs(place.y)) < 1;
+    if (in && was_in) seen += glm::distance(part.points.back(), render::to_glm(point));
+    was_in = in;
     if (std::find(heads.begin(), heads.end(), k) != heads.end()) part.heads.push_back(part.points.size());
     part.points.push_back(render::to_glm(point));
   }
@@ -70,11 +84,51 @@ render::FlowArrows arrows_of(const ViewPanel& p, const render::StateSummary& sum
   render::FlowArrows arrows;
   if (!p.view.flow_arrows || p.view.streamlines != "off") return arrows;
   const render::Moment moment = p.framing.moment(summary);
-  arrows.points = render::arrow_points(p.framing, moment);
+  arrows.points = render::arrow_points(p.framing, moment, p.arrow_net);
   arrows.velocities = sim::background_velocity(p.source.settings.scene.flows, summary.time, arrows.points);
   arrows.reference_speed = p.arrow_speed;
   arrows.shown = render::arrows_shown(p.framing, moment);
   return arrows;
+}
+
+int arrow_net_of(const ViewPanel& p, const std::vector<std::int64_t>& instants) {
+  constexpr double enough = 8;  // arrows, on the mean
+  std::array<double, render::finest_arrow_net> clear{};
+  for (const std::int64_t instant : instants) {
+    const sim::Scene& scene = p.source.settings.scene;
+    const sim::State state = boxed(scene, p.source.trajectory.state(instant));
+    const render::StateSummary summary = render::summarize(state);
+    const render::Camera camera = render::make_camera(p.framing, p.framing.moment(summary));
+    std::vector<render::Sketch> sketches;
+    for (const sim::VesicleState& vesicle : state.vesicles) sketches.push_back(render::sketch_of(vesicle));
+    std::vector<render::Shadow> shadows;
+    for (const Shown& shown : shown_of(scene, p.view, state)) {
+      std::vector<glm::dvec3> points = sketches[shown.vesicle].points;
+      for (glm::dvec3& point : points) point += render::to_glm(shown.shift);
+      shadows.push_back(render::shadow_of(camera, points));
+    }
+    ViewPanel finer = p;
+    for (std::size_t net = 0; net < clear.size(); ++net) {
+      finer.arrow_net = static_cast<int>(net) + 1;
+      const render::FlowArrows arrows = arrows_of(finer, summary);
+      const double fastest = arrows.points.rows() > 0 ? arrows.velocities.rowwise().norm().maxCoeff() : 0;
+      if (fastest <= 0) return 1;  // beads
+      for (Eigen::Index k = 0; k < arrows.points.rows(); ++k) {
+        const glm::dvec3 share = render::to_glm(arrows.velocities.row(k)) / fastest;
+        if (glm::length(share) < render::weakest_arrow) continue;
+        const glm::dvec3 middle = render::to_glm(arrows.points.row(k));
+        const glm::dvec3 half = share * render::longest_arrow * camera.half_height / 2.0;
+        const glm::dvec2 aspect(camera.half_width / camera.half_height, 1);
+        const double shown = render::clear_of_bodies(shadows, aspect * camera.picture_place(middle - half),
+                                                     aspect * camera.picture_place(middle + half));
+        if (shown > 0.8) clear[net] += 1.0 / static_cast<double>(instants.size());
+      }
+    }
+  }
+  std::size_t best = 0;
+  for (std::size_t net = 1; net < clear.size(); ++net)
+    if (clear[best] < enough && clear[net] > clear[best]) best = net;
+  return static_cast<int>(best) + 1;
 }
 
 render::FlowLines flow_lines_of(sim::Plans& plans, const ViewPanel& p, const sim::State& state,
@@ -85,7 +139,7 @@ render::FlowLines flow_lines_of(sim::Plans& plans, const ViewPanel& p, const sim
   const double between_heads = 7 * request.spacing;
   for (const render::Streamline& line : flow_picture(plans, p.source.settings.scene, state, request).lines)
     add_clear_parts(line, render::arrow_places(line, between_heads), request.plane, camera, overlays, p.view.size,
-                    all.lines);
+                    1.5 * request.spacing, all.lines);
   return all;
 }
 

@@ -11,6 +11,10 @@ namespace app {
 /// Background velocity at the net of arrows; empty where the view shows none.
 render::FlowArrows arrows_of(const ViewPanel&, const render::StateSummary&);
 
+/// The coarsest net of which enough arrows stand clear of vesicles and copies, or the one with most of them: one for
+/// the whole movie. instants: of the trajectory.
+int arrow_net_of(const ViewPanel&, const std::vector<std::int64_t>& instants);
+
 /// Streamlines of the whole flow in the plane of the arrows, as far as the picture reaches; none under what lies
 /// over it, in these boxes, and none at all where the view shows none. Throws Interrupted at the first signal.
 render::FlowLines flow_lines_of(sim::Plans&, const ViewPanel&, const sim::State&, const render::Camera&,

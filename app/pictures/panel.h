@@ -19,6 +19,7 @@ struct ViewPanel {
   PictureSource source;
   render::ViewParameters view;  ///< with the panel's own size and camera
   render::Framing framing = {};
+  int arrow_net = 1;               ///< how much finer than usual, as for render::arrow_points()
   double arrow_speed = 0;          ///< of the longest arrow, in the scene's units; 0: there are none
   glm::dvec2 inset_centre{0};      ///< (x, z) of the inset; relative to what a following camera follows
   glm::dvec2 inset_half{1};        ///< half of the extent it must contain

@@ -7,6 +7,7 @@
 #include "app/pictures/overlays.h"
 #include "app/scene/scene_text.h"
 
+#include "render/core/paint.h"
 #include "render/overlay/panels.h"
 #include "sim/measures/diagnostics.h"
 
@@ -154,12 +155,33 @@ void share_scale(const std::vector<ViewPanel*>& panels) {
   }
 }
 
+/// The largest of 1, 2, 5, 10, 20 ... that is not above the value.
+double round_factor(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  return power * (value >= 5 * power ? 5 : value >= 2 * power ? 2 : 1);
+}
+
 /// An arrow is the way of the fluid in one and the same time in all panels; the fastest fluid has the longest arrow.
-/// Their speeds are in lengths of the scene, and arrows are shares of the picture's height.
-void share_arrows(std::vector<ViewPanel>& panels) {
+/// Their speeds are in lengths of the scene, and arrows are shares of the picture's height. Of a trajectory that is so
+/// slow that its arrows would hardly be seen they are longer, and its panels say by how much. each: panels of one
+/// trajectory, one after the other.
+void share_arrows(std::vector<ViewPanel>& panels, std::size_t each) {
+  constexpr double seen = 2 * render::weakest_arrow;  // of the longest arrow
+  const auto rate_of = [](const ViewPanel& p) { return p.arrow_speed / p.framing.half_height; };
   double rate = 0;
-  for (const ViewPanel& p : panels) rate = std::max(rate, p.arrow_speed / p.framing.half_height);
-  for (ViewPanel& p : panels) p.arrow_speed = rate * p.framing.half_height;
+  for (const ViewPanel& p : panels) rate = std::max(rate, rate_of(p));
+  for (std::size_t first = 0; first < panels.size(); first += each) {
+    double own = 0;
+    for (std::size_t k = first; k < first + each; ++k) own = std::max(own, rate_of(panels[k]));
+    const double factor = own > 0 && own < seen * rate ? round_factor(rate / own) : 1;
+    for (std::size_t k = first; k < first + each; ++k) {
+      ViewPanel& p = panels[k];
+      p.arrow_speed = rate * p.framing.half_height / factor;
+      if (factor == 1) continue;
+      if (!p.captions.panel.empty()) p.captions.panel += ", ";
+      p.captions.panel += fmt::format("arrows × {:.0f}", factor);
+    }
+  }
 }
 
 /// What else all frames of the panel share: room of the inset, speed of the longest arrow.
@@ -167,6 +189,8 @@ void complete(ViewPanel& p, const SourceMeasures& m) {
   const PictureSource& source = p.source;
   render::check_framing(p.framing, m.summaries);
   frame_inset(p, m.summaries);
+  const std::vector<std::int64_t> looked = instants_to_look_at(source.trajectory);
+  p.arrow_net = arrow_net_of(p, {looked.front(), looked[looked.size() / 2], looked.back()});
   for (const render::StateSummary& summary : m.summaries) {
     const render::FlowArrows arrows = arrows_of(p, summary);
     if (arrows.velocities.rows() > 0)
@@ -216,7 +240,7 @@ Production prepare_pictures(const std::vector<PictureSource>& sources, std::opti
   }
   for (std::size_t k = 0; k < production.panels.size(); ++k)
     complete(production.panels[k], measures[k / cameras.size()]);
-  share_arrows(production.panels);
+  share_arrows(production.panels, cameras.size());
   return production;
 }
 

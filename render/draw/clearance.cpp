@@ -5,21 +5,30 @@
 
 namespace render {
 
+Shadow shadow_of(const Camera& camera, const std::vector<glm::dvec3>& points) {
+  Shadow shadow;
+  for (const glm::dvec3& point : points) {
+    const glm::dvec2 place = camera.picture_place(point);
+    shadow.points.emplace_back(place.x * camera.half_width / camera.half_height, place.y);
+    shadow.centre += shadow.points.back();
+  }
+  shadow.centre /= static_cast<double>(shadow.points.size());
+  for (const glm::dvec2& p : shadow.points) shadow.radius = std::max(shadow.radius, glm::distance(p, shadow.centre));
+  return shadow;
+}
+
 std::vector<Shadow> shadows(const Frame& frame) {
   std::vector<Shadow> all;
   for (const Body& body : frame.bodies) {
-    Shadow& shadow = all.emplace_back();
+    std::vector<glm::dvec3> points;
     const int stride = body.mesh.plan->latitudes() > 64 ? 2 : 1;  // of the mesh: 48 x 96 points of a large body
     const int rings = body.mesh.plan->latitudes() - 1, columns = body.mesh.plan->longitudes();
     for (int j = 0; j < columns; j += stride)
       for (int i = 0; i < rings; i += stride) {
         const int point = j * rings + i;
-        const glm::dvec2 place = frame.camera.picture_place(body.mesh.position[static_cast<std::size_t>(point)]);
-        shadow.points.emplace_back(place.x * frame.camera.half_width / frame.camera.half_height, place.y);
-        shadow.centre += shadow.points.back();
+        points.emplace_back(body.mesh.position[static_cast<std::size_t>(point)]);
       }
-    shadow.centre /= static_cast<double>(shadow.points.size());
-    for (const glm::dvec2& p : shadow.points) shadow.radius = std::max(shadow.radius, glm::distance(p, shadow.centre));
+    all.push_back(shadow_of(frame.camera, points));
   }
   return all;
 }

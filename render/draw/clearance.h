@@ -15,6 +15,8 @@ struct Shadow {
   double radius = 0;
 };
 std::vector<Shadow> shadows(const Frame& frame);
+/// Of a body of which no more than these points are known.
+Shadow shadow_of(const Camera& camera, const std::vector<glm::dvec3>& points);
 
 /// 0 when the segment touches a membrane's shadow, 1 when it is well away: half an arrow beside a contour looks like
 /// something that belongs to the vesicle.

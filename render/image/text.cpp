@@ -131,6 +131,18 @@ bool is_letter(char32_t c) {
 }
 bool is_variable_of_greek(char32_t c) { return c >= 0x3b1 && c <= 0x3c9 && c != 0x3c0; }
 
+/// The e of 1e-4.
+bool of_exponent(const std::vector<Sign>& signs, std::size_t at) {
+  const auto digit = [&](std::size_t k) {
+    return k < signs.size() && signs[k].level == signs[at].level && signs[k].code >= '0' && signs[k].code <= '9';
+  };
+  const auto sign = [&](std::size_t k) {
+    return k < signs.size() && (signs[k].code == '-' || signs[k].code == '+' || signs[k].code == 0x2212);
+  };
+  return (signs[at].code == 'e' || signs[at].code == 'E') && at > 0 && digit(at - 1) &&
+         (digit(at + 1) || (sign(at + 1) && digit(at + 2)));
+}
+
 /// The letters signs[from..to) are one word: which of them are variables?
 void set_italics(std::vector<Sign>& signs, std::size_t from, std::size_t to) {
   std::size_t letters = 0, latin = 0, greek = 0;
@@ -167,7 +179,7 @@ void set_italics(std::vector<Sign>& signs, std::size_t from, std::size_t to) {
   else if (letters == 1 && !is(before, U".'’") && !is(after, U".'’") && !(is(before, U"(") && is(after, U")"))) {
     const bool unit = before != nullptr && !touches_before && before->code >= '0' && before->code <= '9';
     const bool alone = before == nullptr && after == nullptr;
-    variable = !unit && (in_formula || alone || (first >= 'b' && first <= 'z'));
+    variable = !unit && !of_exponent(signs, from) && (in_formula || alone || (first >= 'b' && first <= 'z'));
   }
   if (!variable) return;
   for (std::size_t k = from; k < to; ++k) {

@@ -2,6 +2,7 @@
 
 #include "render/core/places.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace render {
@@ -18,7 +19,7 @@ int leading(const dvec3& v) {
 
 }  // namespace
 
-sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
+sim::Matrix arrow_points(const Framing& framing, const Moment& moment, int finer) {
   const Camera camera = make_camera(framing, moment);
   // The coordinate plane that faces the viewer most, through the target: there the velocity is what it seems to be.
   const ViewAxes& axes = framing.axes;  // of a camera that turns: its first view, so that the plane does not change
@@ -34,7 +35,8 @@ sim::Matrix arrow_points(const Framing& framing, const Moment& moment) {
   const dvec3 e1 = unit(across), e2 = unit(along);
 
   const double height = 2 * camera.half_height, width = 2 * camera.half_width;
-  const double step1 = height / 4.2, step2 = height / 7.5;
+  // Two columns at most: the longest arrows would meet in a row.
+  const double step1 = height / 4.2 / std::min(finer, 2), step2 = height / 7.5 / finer;
   // A following camera carries the window over a net at rest; passing arrows enter from outside the picture.
   const double shift1 = framing.follows ? camera.target[across] : 0,
                shift2 = framing.follows ? camera.target[along] : 0;

@@ -214,6 +214,41 @@ TEST_CASE("an instant between saved states is interpolated in figures as in stil
   CHECK((top(0.15) - top(0.1)) / whole == Approx(0.5).margin(0.2));
 }
 
+TEST_CASE("a phase portrait goes through the saved states, and between them where the trajectory goes", "[figure]") {
+  // The same steps, saved at each and at every fourth.
+  const std::vector<std::string> steps{"time.step=0.1", "time.end=1.6"};
+  std::vector<std::string> coarse = steps, dense = steps;
+  coarse.emplace_back("time.save_every=0.4");
+  dense.emplace_back("time.save_every=0.1");
+  const auto points_of = [](const Bench& bench) {
+    REQUIRE(bench.figure("phase", {}).status == 0);
+    std::vector<std::pair<double, double>> points;  // inclination, deformation
+    std::istringstream lines(support::read_file(bench.folder / "phase.csv"));
+    std::string line;
+    for (std::getline(lines, line); std::getline(lines, line);) {
+      const std::size_t y = line.rfind(',', line.size() - 2), x = line.rfind(',', y - 1);
+      points.emplace_back(std::stod(line.substr(x + 1)), std::stod(line.substr(y + 1)));
+    }
+    points.pop_back();  // the mark of the start
+    return points;
+  };
+  const auto few = points_of(Bench(coarse)), many = points_of(Bench(dense));
+  // 4 intervals into 20 pieces each, and 16 into 20.
+  REQUIRE(few.size() == 81);
+  REQUIRE(many.size() == 321);
+  double chord = 0, miss = 0;
+  for (std::size_t k = 0; k < 17; ++k) {  // the states that the second file holds
+    const auto& [x, y] = many[20 * k];
+    CHECK(few[5 * k].first == Approx(x).margin(0.05));  // degrees, of 27 in all; cubics over 0.4 of the time
+    miss = std::max(miss, std::abs(few[5 * k].first - x));
+    const std::size_t from = k / 4 * 20, to = std::min<std::size_t>(from + 20, 80);
+    const double share = static_cast<double>(k % 4) / 4;
+    chord = std::max(chord, std::abs((1 - share) * few[from].first + share * few[to].first - x));
+    if (k % 4 == 0) CHECK(few[5 * k].second == Approx(y).epsilon(1e-4));  // steps may differ
+  }
+  CHECK(chord > 10 * miss);  // what straight lines would miss
+}
+
 TEST_CASE("plots below a picture leave its views as they are and mark the time", "[figure]") {
   const Bench bench;
   const auto still = [&](const char* name, const char* time, const char* size, bool plots) {

@@ -114,6 +114,108 @@ TEST_CASE("side by side an arrow is the way of the fluid in one and the same tim
   CHECK(longest == Approx(1));
 }
 
+TEST_CASE(
+    "the arrows of a trajectory that is much slower than the one beside it are longer, and its panel says by how "
+    "much") {
+  const support::TemporaryFolder folder;
+  std::vector<sim::TrajectoryReader> readers;
+  std::vector<app::Settings> settings;
+  for (const char* rate : {"0.03", "1.0"}) {
+    settings.push_back(app::parse_scene(std::string("[flow]\nkind = \"shear\"\nrate = ") + rate +
+                                            "\n[time]\nend = 0.1\nstep = 0.1\n[[vesicle]]\nshape = \"sphere\"\n"
+                                            "order = 4\n[view]\nsize = [640, 360]\n",
+                                        "s.toml", "."));
+    sim::SimulationOptions options;
+    options.trajectory = (folder / (std::string(rate) + ".h5")).string();
+    sim::simulate(settings.back().scene, options, {});
+    readers.emplace_back(options.trajectory);
+  }
+  for (app::Settings& s : settings) s.view.views = {"flow-gradient", "along-flow"};
+  const app::Production production = app::prepare_pictures({{readers[0], settings[0]}, {readers[1], settings[1]}});
+  const std::vector<app::ViewPanel>& panels = production.panels;
+  // 1/0.03 is 33: the round factor below is 20.
+  CHECK(panels[0].captions.panel == "flow-gradient, arrows × 20");
+  CHECK(panels[1].captions.panel == "along-flow, arrows × 20");
+  CHECK(panels[2].captions.panel == "flow-gradient");
+  for (const std::size_t k : {0U, 1U})
+    CHECK(20 * panels[k].arrow_speed / panels[k].framing.half_height ==
+          Approx(panels[k + 2].arrow_speed / panels[k + 2].framing.half_height));
+}
+
+TEST_CASE("where copies of a cell fill the picture the net of arrows is finer, elsewhere it is the usual one") {
+  const support::TemporaryFolder folder;
+  app::Settings settings = app::parse_scene(R"([flow]
+kind = "shear"
+[time]
+end = 0.1
+step = 0.1
+[cell]
+size = [3, 3, 3]
+[[vesicle]]
+shape = "sphere"
+order = 4
+[view]
+size = [1280, 720]
+views = ["flow-gradient", "along-flow"]
+)",
+                                            "s.toml", ".");
+  sim::SimulationOptions options;
+  options.trajectory = (folder / "t.h5").string();
+  sim::simulate(settings.scene, options, {});
+  const sim::TrajectoryReader trajectory(options.trajectory);
+  const auto net = [&] { return app::prepare_pictures({{trajectory, settings}}).panels.front().arrow_net; };
+  CHECK(net() == 1);
+  settings.view.copies = {2, 0, 2};
+  CHECK(net() > 1);
+}
+
+TEST_CASE("no streamline of a picture is a stub") {
+  const support::TemporaryFolder folder;
+  app::Settings settings = app::parse_scene(R"([flow]
+kind = "shear"
+[time]
+end = 0.1
+step = 0.1
+[cell]
+size = [3, 3, 3]
+[[vesicle]]
+shape = "sphere"
+order = 4
+[view]
+size = [640, 360]
+streamlines = "laboratory"
+)",
+                                            "s.toml", ".");
+  sim::SimulationOptions options;
+  options.trajectory = (folder / "t.h5").string();
+  sim::simulate(settings.scene, options, {});
+  const sim::TrajectoryReader trajectory(options.trajectory);
+  const app::ViewPanel panel = app::prepare_pictures({{trajectory, settings}}).panels.front();
+  const sim::State state = trajectory.state(0);
+  const render::Camera camera = render::make_camera(panel.framing, panel.framing.moment(render::summarize(state)));
+  // Boxes that lie close together: between them and the edges there is room for stubs alone.
+  std::vector<render::Box> boxes;
+  for (int column = 0; column < 7; ++column)
+    for (int row = 0; row < 2; ++row)
+      boxes.push_back({30.0 + 90 * column, 40.0 + 160 * row, 80.0 + 90 * column, 160.0 + 160 * row});
+  sim::Plans plans;
+  const render::FlowLines lines = app::flow_lines_of(plans, panel, state, camera, boxes);
+  CHECK_FALSE(lines.lines.empty());
+  for (const render::FlowLines::Line& line : lines.lines) {
+    double seen = 0;  // px; lines are 20 px apart
+    for (std::size_t k = 1; k < line.points.size(); ++k) {
+      const auto pixel = [&](std::size_t i) {
+        const glm::dvec2 place = camera.picture_place(line.points[i]);
+        return glm::dvec2(320 * (1 + place.x), 180 * (1 - place.y));
+      };
+      const glm::dvec2 a = pixel(k - 1), b = pixel(k);
+      const auto outside = [](const glm::dvec2& p) { return p.x < 0 || p.x > 640 || p.y < 0 || p.y > 360; };
+      if (!outside(a) && !outside(b)) seen += glm::distance(a, b);
+    }
+    CHECK(seen > 29);
+  }
+}
+
 TEST_CASE("a shared range is that of all movies of a command, for stills and for figures, too") {
   const support::TemporaryFolder folder;
   std::vector<sim::TrajectoryReader> readers;

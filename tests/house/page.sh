@@ -24,7 +24,7 @@ alike() {
 # Browsers average samples in sRGB, not in linear light: edges and thin lines are a shade darker. A line that is
 # missing, a light that has moved or a vesicle half a pixel off is beyond these.
 tolerances=(--channel 24 --share 0.02)
-for style in opaque ghost field; do
+for style in opaque ghost field cutaway; do
   alike "$folder/t.h5" "&style=$style" --set view.camera=three-quarter --set view.style=$style
 done
 # Small vesicles, with fewer lines, among arrows, rings of arrows seen end-on, and the edges of a cell: an arrow has some
@@ -37,7 +37,7 @@ alike "$folder/t.h5" "" --set view.zoom=0.3 --set view.camera=along-flow
 alike "$folder/cell.h5" "" --set view.zoom=0.5 --set view.camera=three-quarter
 
 # On a screen and on a telephone: everything is in the window, no text lies on another, and fingers can hit the controls.
-"$program" export "$folder/t.h5" --html "$folder/page.html" --set view.field=tension -q
+"$program" export "$folder/t.h5" --html "$folder/page.html" --set view.field=tension --set view.flow_profile=true -q
 cat >"$folder/look.js" <<'EOF'
 (() => {
   const faults = [], boxes = [], range = document.createRange();
@@ -53,6 +53,9 @@ cat >"$folder/look.js" <<'EOF'
   for (const id of ["time", "parameters", "title"]) add(id, document.getElementById(id), true);
   add("scale", document.querySelector("#scale span"), true);
   for (const [k, part] of document.querySelectorAll("#bar figcaption, #bar i, #bar li").entries()) add(`part ${k} of the bar`, part, part.tagName !== "I");
+  const profile = document.querySelector("#profile g");
+  if (innerWidth > innerHeight !== profile.childElementCount > 0) faults.push("the profile is not in wide windows alone");
+  add("profile", profile);
   if (!document.getElementById("keys").hidden) add("keys", document.getElementById("keys"));
   for (const control of document.querySelectorAll("button, select, #scrub")) {
     add(control.id, control);
@@ -61,7 +64,7 @@ cat >"$folder/look.js" <<'EOF'
   return faults.join(", ") || "none";
 })()
 EOF
-for words in style=opaque style=field style=opaque\&keys; do
+for words in style=opaque style=field style=opaque\&keys style=field\&keys style=cutaway; do
   for window in 1440x900@1 390x844@3 844x390@3; do
     faults=$("$browse" "file://$folder/page.html#frame=2&$words" "$window" ask "$folder/look.js")
     [ "$faults" = none ] || { echo "$words at $window: $faults" >&2; exit 1; }

@@ -369,6 +369,8 @@ TEST_CASE("variables are in italics, words, numbers, units and names of operator
   };
   CHECK(italics("γ̇t = 2.5") == "γ̇t");
   CHECK(italics("inclination θ (°)") == "θ");
+  CHECK(italics("tolerance 1e-4") == "");
+  CHECK(italics("κ_{b} = 0.01, 1e-3") == "κ");
   CHECK(italics("E / 8πκ") == "E κ");
   CHECK(italics("σR_{0}^{2}/κ_{b}") == "σR κ");
   CHECK(italics("(dθ/dt) / γ̇") == "θ t γ̇");

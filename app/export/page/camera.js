@@ -19,6 +19,12 @@ class Camera {
     this.shift = [0, 0, 0];
   }
 
+  // Neither turned nor moved.
+  asFilmed() {
+    const { axes, home, shift } = this;
+    return dot(axes.right, home.axes.right) > 0.9999 && dot(axes.up, home.axes.up) > 0.9999 && Math.hypot(...shift) < 1e-3 * home.half_height;
+  }
+
   // Radians about the upward and the rightward direction of the picture.
   turn(aboutUp, aboutRight) {
     const { right, up, back } = this.axes;

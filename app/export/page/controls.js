@@ -242,6 +242,7 @@ class Controls {
       range.selectNodeContents(text);
       boxes.push(range.getBoundingClientRect());
     }
+    boxes.push(document.querySelector("#profile g").getBoundingClientRect());
     return boxes.filter(box => box.width > 0 && box.height > 0);
   }
 
@@ -261,6 +262,7 @@ class Controls {
     element.scrub.value = this.time;
     element.style.value = this.style;
     element.bar.hidden = !page.styles.find(s => s.name === this.style).field;
+    drawProfile(this, size);
     scene.draw(this.style, camera, size, this.overlays());
     document.body.dataset.drawn = this.time;
   }
@@ -285,6 +287,7 @@ async function open() {
   const reader = new SeriesReader(await inflated(bytesOf(page.bytes)), page.frames);
   const vesicles = page.vesicles.map(v => ({ position: reader.next(v.position, 3), labels: reader.next(v.labels, 3),
                                              tracers: reader.next(v.tracers, 3), field: reader.next(v.field, 1) }));
-  new Controls(page, { vesicles, arrows: reader.next(page.arrows, 6, 6 * Math.max(...page.arrow_counts)), targets: reader.next(page.targets, 3, 3) });
+  new Controls(page, { vesicles, arrows: reader.next(page.arrows, 6, 6 * Math.max(...page.arrow_counts)), targets: reader.next(page.targets, 3, 3),
+                             profile: reader.next(page.profile, 1) });
 }
 open().catch(complain);

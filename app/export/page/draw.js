@@ -11,7 +11,7 @@ class Scene {
     const vertices = this.mesh.vertices * count;
     const array = size => new Float32Array(size * vertices);
     this.arrays = { position: array(3), normal: array(3), label: array(3), dot: array(4), next: array(4), paint: array(4),
-                    detail: array(4), scalar: array(1), contour: array(3), outline: array(4), light: array(2), edge: array(1) };
+                    detail: array(4), scalar: array(1), contour: array(3), outline: array(4), light: array(2), edge: array(1), cut: array(4) };
     this.coarse = new Mesh(sketchLatitudes);
     this.nearest = new Float32Array(2 * vertices);
     this.slopes = { theta: new Float32Array(3 * this.mesh.vertices), phi: new Float32Array(3 * this.mesh.vertices) };
@@ -57,7 +57,7 @@ class Scene {
     };
     const place = [["position", 0, 3], ["normal", 1, 3]];
     this.bodies = vertexArray([...place, ["label", 2, 3], ["dot", 3, 4], ["next", 4, 4], ["paint", 5, 4], ["detail", 6, 4],
-                               ["scalar", 7, 1], ["edge", 9, 1], ["contour", 10, 3], ["light", 11, 2]]);
+                               ["scalar", 7, 1], ["cut", 8, 4], ["edge", 9, 1], ["contour", 10, 3], ["light", 11, 2]]);
     this.hulls = vertexArray([...place, ["outline", 2, 4]]);
     this.corners = gl.createBuffer();
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
@@ -83,6 +83,7 @@ class Scene {
     this.time = time;
     this.sketches = [];
     this.shaded = undefined;
+    this.planes = undefined;
     page.vesicles.forEach((vesicle, v) => {
       const series = data.vesicles[v], part = (name, size) => arrays[name].subarray(size * v * count, size * (v + 1) * count);
       const coefficients = numbersAt(series.position, time, vesicle.breaks);
@@ -137,7 +138,8 @@ class Scene {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     this.surroundings.draw(look, camera, Math.round(this.time), this.shadows(matrices));
     this.drawBodies(look);
-    if (!style.see_through && page.paint.outline_width > 0) this.drawOutlines(look);
+    if (style.cut) this.drawCuts(look);
+    else if (!style.see_through && page.paint.outline_width > 0) this.drawOutlines(look);
     gl.bindVertexArray(null);
   }
 
@@ -167,7 +169,8 @@ class Scene {
   prepare(look) {
     const { style, matrices, details } = look, { page, arrays, mesh } = this;
     if (style.occluded) this.lightUp(look);
-    if (style.see_through && page.paint.outline_width > 0) {
+    if (style.cut) this.open();
+    if ((style.see_through || style.cut) && page.paint.outline_width > 0) {
       page.vesicles.forEach((_, v) => contourDistances(mesh, arrays.position, arrays.normal, v * mesh.vertices, matrices,
                                                        this.gl.drawingBufferHeight / 2, look.outline + 6, arrays.edge));
       this.refill(this.buffers.edge, arrays.edge);
@@ -190,6 +193,17 @@ class Scene {
     this.refill(this.buffers.dot, arrays.dot);
     this.refill(this.buffers.next, arrays.next);
   }
+
+  // The planes of the cuts and their edges, once for each time.
+  open() {
+    const { page, mesh, arrays } = this;
+    if (this.planes) return;
+    this.planes = cutPlanes(mesh, arrays.position, page.vesicles.length, page.cut);
+    this.cuts = page.vesicles.map((vesicle, v) => ({ vesicle, curves: cutEdges(mesh, arrays.position, v * mesh.vertices, this.planes[v]) }));
+    this.fill("cut", (_, v) => this.planes[v]);
+  }
+
+  drawCuts(look) { this.surroundings.drawCuts(look, Math.round(this.time), this.cuts); }
 
   // The key light turns with the camera.
   lightUp({ axes, matrices, size }) {
@@ -224,8 +238,10 @@ class Scene {
     }
     gl.bindVertexArray(this.bodies);
     if (!style.see_through) {
+      if (style.cut) gl.disable(gl.CULL_FACE);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
       gl.drawElements(gl.TRIANGLES, this.sorted.length, gl.UNSIGNED_INT, 0);
+      gl.enable(gl.CULL_FACE);
       return;
     }
     sortBackToFront(matrices.view, arrays.position, mesh, page.vesicles.length, this.sorted);

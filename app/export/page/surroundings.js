@@ -47,7 +47,22 @@ class Surroundings {
   // shadows: places of the membranes in the picture, which arrows leave free.
   draw(look, camera, frame, shadows) {
     this.drawArrows(look, camera, frame, shadows);
-    if (this.page.cell) this.drawCell(look, frame);
+    if (this.page.cell && !look.style.cut) this.drawCell(look, frame);
+  }
+
+  // Edges of the opened membranes: a bright core between two dark lines. Opened, they show the edges of the cell, too, in
+  // their place.
+  drawCuts({ matrices, samples }, frame, bodies) {
+    const { page } = this, line = samples(Math.max(page.paint.outline_width, 1.6), 1), core = 0.9 * line, halfWidth = core + 0.9 * line;
+    for (const { curves, vesicle } of bodies)
+      this.withRibbons(vesicle.contour, halfWidth, () => {
+        for (const curve of curves) {
+          const eyes = curve.map(point => eyePlace(matrices, point));
+          for (const eye of eyes) eye[2] += 0.004 * vesicle.radius / matrices.unit;
+          this.drawRibbon(eyes, true, halfWidth + 1, matrices.projection, 1);
+        }
+      }, { width: core, colour: vesicle.cut_edge });
+    if (page.cell) this.drawCell({ matrices, samples }, frame);
   }
 
   drawArrows({ matrices, samples, size, overlays }, camera, frame, shadows) {
@@ -85,9 +100,11 @@ class Surroundings {
     if (endOn.length > 0) this.drawEndOn(endOn, matrices, samples(1.5, 0.5));
   }
 
-  withRibbons(colour, halfWidth, draw) {
+  // core: of another colour, in the middle.
+  withRibbons(colour, halfWidth, draw, core = { width: -2, colour }) {
     const { gl } = this, set = this.paint.use("ribbon", "");
-    set.number("u_core", -2);
+    set.number("u_core", core.width);
+    set.vector("u_colour", core.colour);
     set.number("u_half_width", halfWidth);
     set.vector("u_rim", colour);
     gl.enable(gl.BLEND);
