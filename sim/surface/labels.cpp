@@ -95,11 +95,11 @@ struct LabelGrid {
   const Basis& labels;
   const Basis& position;
 
-  LabelGrid(Plans& plans, const SlidingPath& path, int order)
-      : LabelGrid(plans, order, path.positions[0].order) {}
+  LabelGrid(Plans& plans, const SlidingPath& path, int order) : LabelGrid(plans, order, path.positions[0].order) {}
   LabelGrid(Plans& plans, int order, int p)
       : labels(plans.basis(order, points(order, p))), position(plans.basis(p, points(order, p))) {}
-  /// A rate of degree p, a slope and the function that it is tested with, both of degree `order`, are integrated exactly.
+  /// A rate of degree p, a slope and the function that it is tested with, both of degree `order`, are integrated
+  /// exactly.
   static int points(int order, int p) { return order + (p + 1) / 2; }
   /// Velocity of the grid over the parameters at a time.
   Matrix velocity(const SlidingPath& path, double time) const {
