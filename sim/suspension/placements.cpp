@@ -174,6 +174,27 @@ Eigen::Vector3i places_in(const Vec3& cell, const Vec3& size, int count) {
   return best;
 }
 
+/// A lattice asks for no distance, but its copies must not overlap.
+void require_apart(const Copies& c, const std::vector<VesicleParameters>& all, double spacing, const Room& room) {
+  const auto refuse = [&](const std::string& what) {
+    std::string keys = place_of(c, room.cell).keys;
+    if (c.p.size_spread > 0) keys += " or size_spread";
+    if (c.p.jitter > 0) keys += " or jitter";
+    throw std::invalid_argument(fmt::format("{} {} on a lattice {} overlap: {}; give a smaller {}", c.count(),
+                                            vesicles_of(c), place_of(c, room.cell).at, what, keys));
+  };
+  const double widest = 2 * c.extent.reach * c.largest(), thinnest = 2 * c.extent.core * c.largest();
+  if (spacing * (1 - 2 * c.p.jitter) > widest) return;
+  if (c.fraction(room.cell) > 1 || (room.cell && room.cell->minCoeff() < thinnest))  // images without number
+    return refuse("they are thicker than the room");
+  const Coefficients upright = upright_shape(c.original);
+  std::vector<Coefficients> x;
+  for (std::size_t k = 0; k < all.size(); ++k) x.push_back(laid(all[k], {upright.order, c.sizes[k] * upright.values}));
+  Plans plans;
+  const CellSides sides = room.cell ? CellSides(Eigen::Matrix3d(room.cell->asDiagonal())) : CellSides();
+  if (const Gap gap = smallest_gap(plans, x, sides); gap.crossing) refuse(pair_name(gap) + " of them do");
+}
+
 std::vector<VesicleParameters> lattice(const PlacementParameters& p, const VesicleParameters& original,
                                        const Room& room) {
   const Copies copies = copies_of(p, original);
@@ -198,6 +219,7 @@ std::vector<VesicleParameters> lattice(const PlacementParameters& p, const Vesic
     if (p.orientation == "random") v.axis = random_direction(random);
     all.push_back(std::move(v));
   }
+  require_apart(copies, all, spacing.minCoeff(), room);
   return all;
 }
 

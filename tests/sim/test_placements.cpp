@@ -124,7 +124,7 @@ TEST_CASE("the volume fraction of a placement of many sizes is that of the sizes
     PlacementParameters p;
     p.kind = kind;
     p.count = 27;
-    p.volume_fraction = 0.1;
+    p.volume_fraction = kind == "lattice" ? 0.02 : 0.1;  // a lattice makes no room for large ones
     p.size_spread = 0.4;
     if (kind == "tube") p.radius = 4;
     p.orientation = kind == "box" ? "random" : "as-given";
@@ -156,6 +156,17 @@ TEST_CASE("the volume fraction of a placement of many sizes is that of the sizes
   }
   Scene s = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
   PlacementParameters p;
+  p.count = 27;
+  p.volume_fraction = 0.5;
+  p.size_spread = 0.4;
+  s.placements = {p};
+  CHECK_THROWS_WITH(placed(s), Catch::Contains("overlap: vesicles") &&
+                                   Catch::Contains("give a smaller volume_fraction or size_spread"));
+  s.placements[0].size_spread = 0;
+  s.cell.size = Vec3(1.5, 1.5, 1.5);  // a volume fraction of 33
+  CHECK_THROWS_WITH(placed(s), Catch::Contains("on a lattice at a volume fraction of 33.5 overlap") &&
+                                   Catch::Contains("give a smaller count"));
+  s.cell.size.reset();
   p.kind = "tube";
   p.count = 200;
   p.size_spread = 1;
