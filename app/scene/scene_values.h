@@ -42,7 +42,9 @@ void read_value(const sim::Parameter& parameter, const toml::node& node, std::op
 template <class T>
 void read_value(const sim::Parameter& parameter, const toml::node& node, std::vector<T>& value) {
   const toml::array* list = node.as_array();
-  if (!list) fail_at(node.source(), "'" + std::string(parameter.name) + "' must be a list, [..., ...]");
+  if (!list)
+    fail_at(node.source(),
+            "'" + std::string(parameter.name) + "' must be a list, [..., ...]: " + std::string(parameter.meaning));
   value.clear();
   for (const toml::node& item : *list) {
     T read{};

@@ -52,4 +52,18 @@ void divided_for(const Division& division, int n, Body&& body) {
   divided_for(division, n, body, [](Parcel&, int) {});
 }
 
+/// Each rank's numbers, of its own items, for all.
+inline void share(const Division& division, std::vector<double>& by_item) {
+  if (division.whole()) return;
+  std::vector<double> mine;
+  for (std::size_t k = 0; k < by_item.size(); ++k)
+    if (division.mine(int(k))) mine.push_back(by_item[k]);
+  const auto all = division.ranks->gathered(mine);
+  std::vector<std::size_t> next(all.size());
+  for (std::size_t k = 0; k < by_item.size(); ++k) {
+    const auto owner = std::size_t(division.owner[k]);
+    by_item[k] = all[owner].at(next[owner]++);
+  }
+}
+
 }  // namespace sim

@@ -31,14 +31,6 @@ Sources make_sources(const Basis& basis, const Coefficients& x) {
 
 int smooth_order(int p, int wanted) { return std::max(p + 1, wanted > 0 ? wanted : int(std::ceil(std::pow(p, 1.5)))); }
 
-std::pair<Eigen::Index, double> nearest_source(const Sources& s, const Vec3& x) {
-  Eigen::Index k = 0;
-  const double square = ((s.points.col(0).array() - x[0]).square() + (s.points.col(1).array() - x[1]).square() +
-                         (s.points.col(2).array() - x[2]).square())
-                            .minCoeff(&k);
-  return {k, std::sqrt(square)};
-}
-
 FarField plan_far_field(std::shared_ptr<const std::vector<Sources>> sources, std::vector<TargetGroup> groups) {
   FarField far{std::move(sources), std::move(groups), {}};
   far.partial.resize(far.groups.size());

@@ -26,9 +26,6 @@ Sources make_sources(const Basis&, const Coefficients& position);
 /// Order of the fine source grid, q ~ p^(3/2) (section 3.1.10), unless another one is wanted.
 int smooth_order(int p, int wanted = 0);
 
-/// Index of the source point nearest to x, and its distance.
-std::pair<Eigen::Index, double> nearest_source(const Sources&, const Vec3& x);
-
 /// Densities at the points of one surface: force for the single layer; for the double layer, or empty where there is
 /// none.
 struct SourceDensities {

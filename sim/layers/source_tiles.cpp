@@ -28,12 +28,6 @@ SourceTiles make_tiles(const Basis& basis, const Sources& s) {
   return tiles;
 }
 
-SourceTiles moved(SourceTiles tiles, const Vec3& by) {
-  tiles.points.rowwise() += by.transpose();
-  for (Box& box : tiles.boxes) box = {box.low + by, box.high + by};
-  return tiles;
-}
-
 std::pair<Eigen::Index, double> nearest_source(const SourceTiles& tiles, const Vec3& x, double limit) {
   Eigen::Index best = -1;
   double square = limit * limit;

@@ -18,7 +18,6 @@ struct SourceTiles {
   std::vector<Box> boxes;            ///< by tile
 };
 SourceTiles make_tiles(const Basis&, const Sources&);
-SourceTiles moved(SourceTiles, const Vec3& by);
 
 /// Index of the source point nearest to x, the lowest of equals, and its distance; {-1, limit} where none is nearer
 /// than the limit.

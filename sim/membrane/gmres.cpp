@@ -14,7 +14,7 @@ GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b,
     result.converged = true;
     return result;
   }
-  Vector r = guess.isZero(0) ? b : Vector(b - A(guess));
+  Vector r = norm(guess) == 0 ? b : Vector(b - A(guess));  // by the product: all processes decide alike
   double beta = norm(r);
   if (beta > scale) {  // a guess that is worse than none costs digits
     r = b;

@@ -68,6 +68,41 @@ void check_repulsion(const Model& s, const Dynamics& d) {
                     least));
 }
 
+/// By how many of its radii, or strains, each cause of motion moves a vesicle until the end; beyond `most` a double has
+/// no digits left for the shape. Throws std::invalid_argument, which names the key.
+void check_magnitudes(const Model& s, const Dynamics& d) {
+  constexpr double most = 1e15;
+  const Scene& scene = s.scene;
+  const double time = std::max(scene.time.end, scene.time.step.value_or(0));
+  const auto check = [&](double rate, const std::string& what, std::size_t vesicle) {
+    if (!(rate * time <= most) || !(rate * rate < std::numeric_limits<double>::max()))
+      throw std::invalid_argument(
+          fmt::format("{} is too large to compute with: until time.end = {:g} it would move vesicle {} by {:.2g} times "
+                      "its radius; beyond {:.0e} no digits are left for its shape",
+                      what, scene.time.end, vesicle, rate * time, most));
+  };
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
+    const VesicleDynamics& v = d.vesicles[k];
+    const double radius = area_radius({v.area, v.volume});
+    const Matrix centre = v.position.values.row(0) / std::sqrt(unit_sphere_area);
+    for (const FlowParameters& flow : scene.flows) {
+      FlowParameters steady = flow;
+      steady.time_factor = "constant";
+      Matrix points = centre.replicate(4, 1);
+      for (int a = 0; a < 3; ++a) points(a + 1, a) += radius;
+      const double speed = background_velocity(std::span(&steady, 1), 0, points).cwiseAbs().maxCoeff();
+      check(speed / radius, fmt::format("the [[flow]] '{}'", flow.kind), k);
+    }
+    const Material& m = s.materials[k];
+    check(m.bending_modulus / std::pow(radius, 3), fmt::format("vesicle.bending_modulus = {:g}", m.bending_modulus), k);
+    check(std::abs(m.density_difference) * scene.buoyancy.gravity.norm() * radius,
+          fmt::format("vesicle.density_difference = {:g} in buoyancy.gravity", m.density_difference), k);
+    if (d.vesicles.size() > 1 || scene.cell.size)
+      check(scene.numerics.repulsion_strength,
+            fmt::format("numerics.repulsion_strength = {:g}", scene.numerics.repulsion_strength), k);
+  }
+}
+
 /// What a vesicle starts with that no step has moved yet, or that other flows take from now on: the frame of the flow.
 void start_anew(const Model& s, double time, std::int64_t step, VesicleDynamics& v) {
   const Basis& basis = s.plans.basis(v.position.order, v.position.order + 1);
@@ -195,6 +230,7 @@ Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
     d.vesicles.push_back(std::move(v));
   }
   check_cell(s, d);
+  check_magnitudes(s, d);
   const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, 0), s.ranks);
   if (gap.crossing) throw std::invalid_argument(pair_name(gap) + " overlap");
   if (gap.distance < gap_floor(s, d))

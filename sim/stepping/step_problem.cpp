@@ -31,6 +31,7 @@ Division division_of(const Ranks& ranks, std::span<const Coefficients> positions
 }  // namespace
 
 Rejection not_converged(double residual, int iterations) {
+  if (!std::isfinite(residual)) return {"velocities or forces are too large to compute with"};
   return {fmt::format("the linear solver stopped at a relative residual of {:.1e} after {} iterations", residual,
                       iterations)};
 }

@@ -226,13 +226,13 @@ int order_of_shape(const Coefficients& c) {
 
 }  // namespace
 
-Coefficients initial_position(const VesicleParameters& v) {
+Coefficients upright_shape(const VesicleParameters& v) {
   if (v.order == 0) {
     VesicleParameters ordered = v;
     constexpr int enough = 32;
     ordered.order = enough;
-    ordered.order = order_of_shape(initial_position(ordered));
-    return initial_position(ordered);
+    ordered.order = order_of_shape(upright_shape(ordered));
+    return upright_shape(ordered);
   }
   const auto* row = find_row(shape_catalogue(), v.shape);
   if (!row)
@@ -248,16 +248,25 @@ Coefficients initial_position(const VesicleParameters& v) {
     const double area = v.area ? *v.area : v.radius ? 4 * pi * *v.radius * *v.radius : default_area;
     c.values *= std::sqrt(area / size.area);
   }
-  // Shapes of the catalogue are made about z; so is a table, which says itself how it lies.
+  return c;
+}
+
+Eigen::Matrix3d local_frame(const VesicleParameters& v) {
   const Vec3 z = v.axis ? v.axis->normalized() : v.shape == "file" ? Vec3(Vec3::UnitZ()) : Vec3(Vec3::UnitX());
   Vec3 y = Vec3::UnitY() - z * z[1];
   if (y.norm() < 1e-8) y = Vec3::UnitZ();
   y.normalize();
   Eigen::Matrix3d frame;
   frame << y.cross(z), y, z;
-  c.values = (c.values * frame.transpose()).eval();
+  return frame;
+}
+
+Coefficients laid(const VesicleParameters& v, Coefficients c) {
+  c.values = (c.values * local_frame(v).transpose()).eval();
   c.values.row(0) += std::sqrt(4 * pi) * v.center.transpose();
   return c;
 }
+
+Coefficients initial_position(const VesicleParameters& v) { return laid(v, upright_shape(v)); }
 
 }  // namespace sim

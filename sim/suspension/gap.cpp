@@ -14,10 +14,6 @@
 
 namespace sim {
 
-namespace {
-
-/// Solid angle of a surface at x over 4 pi: 1 inside, 0 outside; by the smooth rule, so right to about one half near
-/// it.
 double winding(const Sources& s, const Vec3& x) {
   double sum = 0;
   for (Eigen::Index k = 0; k < s.points.rows(); ++k) {
@@ -27,19 +23,21 @@ double winding(const Sources& s, const Vec3& x) {
   return sum / (4 * std::numbers::pi);
 }
 
+namespace {
+
 /// Two parameters on two surfaces.
 struct Approach {
   Vec3 s, t;
   double distance = 0;
 };
 
-/// Slope and curvature of |x(s) - y(t)|^2 / 2 along great circles through s and t.
+/// Slope and curvature of |x(s) + shift - y(t)|^2 / 2 along great circles through s and t.
 struct Bowl {
   Eigen::Vector4d slope;
   Eigen::Matrix4d curvature;
 };
-Bowl bowl(const PointTangents& x, const PointTangents& y) {
-  const Vec3 d = x.x - y.x;
+Bowl bowl(const PointTangents& x, const PointTangents& y, const Vec3& shift) {
+  const Vec3 d = x.x + shift - y.x;
   Eigen::Matrix<double, 3, 4> tangents;
   tangents << x.a, x.b, -y.a, -y.b;
   Bowl b{tangents.transpose() * d, tangents.transpose() * tangents};
@@ -52,12 +50,13 @@ Bowl bowl(const PointTangents& x, const PointTangents& y) {
   return b;
 }
 
-/// Newton's method for the least distance; a step that does not come nearer is halved.
-Approach nearest_approach(const PointSampler& first, const PointSampler& second, Approach at) {
+/// Newton's method for the least distance of the first surface, shifted, from the second; a step that does not come
+/// nearer is halved.
+Approach nearest_approach(const PointSampler& first, const PointSampler& second, const Vec3& shift, Approach at) {
   PointTangents x = first.tangents(at.s), y = second.tangents(at.t);
-  at.distance = (x.x - y.x).norm();
+  at.distance = (x.x + shift - y.x).norm();
   for (int iteration = 0; iteration < 30; ++iteration) {
-    const auto [slope, curvature] = bowl(x, y);
+    const auto [slope, curvature] = bowl(x, y, shift);
     // Directions of negative or no curvature are walked down by their size.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(curvature);
     const Eigen::Vector4d size =
@@ -69,7 +68,7 @@ Approach nearest_approach(const PointSampler& first, const PointSampler& second,
       Approach trial{(at.s + step[0] * x.e1 + step[1] * x.e2).normalized(),
                      (at.t + step[2] * y.e1 + step[3] * y.e2).normalized()};
       const PointTangents u = first.tangents(trial.s), v = second.tangents(trial.t);
-      trial.distance = (u.x - v.x).norm();
+      trial.distance = (u.x + shift - v.x).norm();
       if (trial.distance < at.distance) {
         nearer = at.distance - trial.distance > 1e-14 * at.distance;
         at = trial;
@@ -85,31 +84,21 @@ Approach nearest_approach(const PointSampler& first, const PointSampler& second,
 
 /// A surface with the source grid on which gaps are looked for.
 struct Surface {
-  Coefficients position;
   PointSampler sampler;
   const Basis& basis;
   Sources sources;
   SourceTiles tiles;
 };
 
-Surface moved(Surface s, const Vec3& shift) {
-  s.position.values.row(0) += std::sqrt(4 * std::numbers::pi) * shift.transpose();
-  s.sampler = PointSampler(s.position);
-  s.sources.points.rowwise() += shift.transpose();
-  s.tiles = moved(std::move(s.tiles), shift);
-  s.sources.box = {s.sources.box.low + shift, s.sources.box.high + shift};
-  return s;
-}
-
-/// The nearest pair of source points, where it is nearer than `best`.
+/// The nearest pair of source points of a surface, shifted, and another one.
 struct NearestSources {
   double distance;
   Eigen::Index first = 0, second = 0;
 };
-NearestSources nearest_sources(const Surface& a, const Surface& b) {
+NearestSources nearest_sources(const Surface& a, const Vec3& shift, const Surface& b) {
   NearestSources nearest{std::numeric_limits<double>::infinity()};
   for (Eigen::Index k = 0; k < a.sources.points.rows(); ++k) {
-    const Vec3 x = a.sources.points.row(k).transpose();
+    const Vec3 x = a.sources.points.row(k).transpose() + shift;
     if (distance(b.sources.box, x) >= nearest.distance) continue;
     if (const auto [l, d] = nearest_source(b.tiles, x, nearest.distance); l >= 0) nearest = {d, k, l};
   }
@@ -117,32 +106,41 @@ NearestSources nearest_sources(const Surface& a, const Surface& b) {
 }
 
 /// Does one hold points of the other? Their boxes overlap.
-bool overlaps(const Sources& a, const Sources& b) {
-  if (winding(b, a.points.row(0).transpose()) > 0.5 || winding(a, b.points.row(0).transpose()) > 0.5) return true;
+bool overlaps(const Sources& a, const Vec3& shift, const Sources& b) {
+  const Vec3 first = a.points.row(0).transpose() + shift, second = b.points.row(0).transpose() - shift;
+  if (winding(b, first) > 0.5 || winding(a, second) > 0.5) return true;
   for (Eigen::Index k = 0; k < a.points.rows(); k += 7)
-    if (const Vec3 x = a.points.row(k).transpose(); distance(b.box, x) == 0 && winding(b, x) > 0.9) return true;
+    if (const Vec3 x = a.points.row(k).transpose() + shift; distance(b.box, x) == 0 && winding(b, x) > 0.9) return true;
   return false;
 }
 
-/// Of two surfaces: the nearest pair of source points, then Newton on the two spectral surfaces.
-Gap gap_between(const Surface& a, const Surface& b, int first, int second) {
-  const NearestSources nearest = nearest_sources(a, b);
+/// Of a surface, shifted, and another one: the nearest pair of source points, then Newton on the two spectral surfaces.
+Gap gap_between(const Surface& a, const Vec3& shift, const Surface& b, int first, int second) {
+  const NearestSources nearest = nearest_sources(a, shift, b);
   Gap gap{nearest.distance, first, second, false};
   const double spacing = b.sources.spacing[nearest.second];
   if (nearest.distance < 3 * std::max(a.sources.spacing[nearest.first], spacing)) {
     const Approach approach = nearest_approach(
-        a.sampler, b.sampler,
+        a.sampler, b.sampler, shift,
         {grid_direction(a.basis, nearest.first), grid_direction(b.basis, nearest.second), nearest.distance});
-    const Vec3 x = a.sampler.position(approach.s);
+    const Vec3 x = a.sampler.position(approach.s) + shift;
     gap.distance = approach.distance;
     // Where they cross, the least distance is zero up to rounding and has no side.
     constexpr double touching = 1e-5;  // of the spacing: what the search for a zero distance leaves
     gap.crossing = gap.distance < touching * spacing || nearest_point(b.sampler, x, approach.t).inside;
   }
   // Where boxes overlap one surface may hold the other, or they may cross by far.
-  if (!gap.crossing && distance(a.sources.box, b.sources.box) == 0) gap.crossing = overlaps(a.sources, b.sources);
+  const Box box{a.sources.box.low + shift, a.sources.box.high + shift};
+  if (!gap.crossing && distance(box, b.sources.box) == 0) gap.crossing = overlaps(a.sources, shift, b.sources);
   if (gap.crossing) gap.distance = 0;
   return gap;
+}
+
+Surface searched(Plans& plans, const Coefficients& position) {
+  const Basis& basis = plans.basis(position.order, smooth_order(position.order));
+  Sources sources = make_sources(basis, position);
+  SourceTiles tiles = make_tiles(basis, sources);
+  return {PointSampler(position), basis, std::move(sources), std::move(tiles)};
 }
 
 /// The surfaces of a suspension with all that a search for gaps asks of them.
@@ -159,13 +157,7 @@ Search search_among(Plans& plans, std::span<const Coefficients> positions, const
   Search search;
   search.cell = cell;
   search.surfaces.resize(n);
-  parallel_for(n, [&](int i) {
-    const Basis& basis = plans.basis(positions[i].order, smooth_order(positions[i].order));
-    Sources sources = make_sources(basis, positions[i]);
-    SourceTiles tiles = make_tiles(basis, sources);
-    search.surfaces[i].emplace(
-        Surface{positions[i], PointSampler(positions[i]), basis, std::move(sources), std::move(tiles)});
-  });
+  parallel_for(n, [&](int i) { search.surfaces[i].emplace(searched(plans, positions[i])); });
   Box all{search.surfaces[0]->sources.box};
   for (const auto& surface : search.surfaces) {
     search.boxes.push_back(surface->sources.box);
@@ -183,8 +175,7 @@ std::vector<Gap> gaps_of_pairs(const Search& search, double reach, const Ranks& 
   const auto look = [&](int k) {
     const ImagePair& pair = pairs[k];
     const Surface &first = *search.surfaces[pair.first], &second = *search.surfaces[pair.second];
-    gaps[k] = pair.image.isZero() ? gap_between(second, first, pair.first, pair.second)
-                                  : gap_between(moved(second, pair.shift(search.cell)), first, pair.first, pair.second);
+    gaps[k] = gap_between(second, pair.shift(search.cell), first, pair.first, pair.second);
   };
   divided_for(divided(ranks, int(pairs.size())), int(pairs.size()), look, [&](Parcel& parcel, int k) {
     Gap& gap = gaps[k];
@@ -211,6 +202,10 @@ Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions, const Ce
       if (gap.distance < best.distance) best = gap;
     if (best.distance <= reach || last) return best;
   }
+}
+
+Gap gap_of_two(Plans& plans, const Coefficients& first, const Coefficients& second) {
+  return gap_between(searched(plans, second), Vec3::Zero(), searched(plans, first), 0, 1);
 }
 
 std::vector<double> gaps_to_neighbours(Plans& plans, std::span<const Coefficients> positions, double reach,

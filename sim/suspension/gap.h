@@ -3,6 +3,7 @@
 
 #include "sim/core/cells.h"
 #include "sim/core/ranks.h"
+#include "sim/layers/far_field.h"
 #include "sim/layers/near.h"
 #include "sim/layers/plans.h"
 
@@ -24,8 +25,15 @@ std::string pair_name(const Gap&);
 /// Ranks divide the pairs.
 Gap smallest_gap(Plans&, std::span<const Coefficients> positions, const CellSides& = {}, const Ranks& = alone);
 
+/// Of two alone, in one thread: for many small searches, where threads would wait for one another.
+Gap gap_of_two(Plans&, const Coefficients& first, const Coefficients& second);
+
 /// From every vesicle to the nearest other; where that is farther than `reach`, any value above it, also infinity.
 std::vector<double> gaps_to_neighbours(Plans&, std::span<const Coefficients> positions, double reach,
                                        const CellSides& = {}, const Ranks& = alone);
+
+/// Solid angle of a surface at x over 4 pi: 1 inside, 0 outside; by the smooth rule, so right to about one half near
+/// it.
+double winding(const Sources&, const Vec3& x);
 
 }  // namespace sim

@@ -179,12 +179,13 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
   std::map<int, NearRule> rules;  // by degree
   for (const Coefficients& x : positions)
     if (!rules.contains(x.order)) rules.emplace(x.order, near_rule(x.order, near_order(options, x.order)));
-  std::vector<NearSource> near;
-  for (int i = 0; i < n; ++i)
-    near.push_back({positions[i], PointSampler(positions[i]), plans.rotation(positions[i].order),
-                    rules.at(positions[i].order), make_tiles(*w.source_basis[i], w.sources[i])});
+  std::vector<std::optional<NearSource>> near(static_cast<std::size_t>(n));  // of whom this rank's vesicles are near
+  for (const PairPlan& pair : w.pairs)
+    if (const int j = pair.source; w.division.mine(pair.target) && !near[j])
+      near[j].emplace(NearSource{positions[j], PointSampler(positions[j]), plans.rotation(positions[j].order),
+                                 rules.at(positions[j].order), make_tiles(*w.source_basis[j], w.sources[j])});
   divided_for(of_pairs, int(w.pairs.size()),
-              [&](int k) { fill(w.pairs[k], w, near[w.pairs[k].source], options, only_near); });
+              [&](int k) { fill(w.pairs[k], w, *near[w.pairs[k].source], options, only_near); });
   std::erase_if(w.pairs, [](const PairPlan& pair) { return pair.fine.empty() && pair.near.empty(); });
   const std::vector<Exclusion> excluded = exclusions(w.pairs);
   if (fast)

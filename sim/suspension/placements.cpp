@@ -22,47 +22,63 @@ namespace {
 
 using std::numbers::pi;
 
+/// A copy as it lies.
+struct Lying {
+  Vec3 center;
+  double size;
+  Eigen::Matrix3d frame;
+};
+
 /// Copies that have been placed, and whether another one keeps its distance from all of them and from all images.
 struct Occupied {
   const Copies& copies;
   std::optional<Vec3> cell;
-  std::vector<Vec3> centers = {};
-  std::vector<double> sizes = {};
-  std::vector<Coefficients> surfaces = {};
+  Coefficients upright;  ///< of size 1
+  std::vector<Lying> lying = {};
   Plans plans = {};
+  Sources grid = make_sources(plans.basis(upright.order, upright.order + 4), upright);
 
-  bool free(const Vec3& center, double size, const Coefficients& x) {
-    for (std::size_t k = 0; k < centers.size(); ++k)
-      for (const Vec3& shift : images(centers[k] - center, sizes[k] + size, false))
-        if (!apart(centers[k] + shift - center, sizes[k] + size, moved(surfaces[k], shift), x)) return false;
-    for (const Vec3& shift : images(Vec3::Zero(), 2 * size, true))
-      if (!apart(shift, 2 * size, moved(x, shift), x)) return false;
+  bool free(const Lying& place) {
+    for (const Lying& other : lying)
+      for (const Vec3& shift : images(other.center - place.center, other.size + place.size, false))
+        if (!apart({other.center + shift, other.size, other.frame}, place)) return false;
+    for (const Vec3& shift : images(Vec3::Zero(), 2 * place.size, true))
+      if (!apart({place.center + shift, place.size, place.frame}, place)) return false;
     return true;
-  }
-  void take(const Vec3& center, double size, const Coefficients& x) {
-    centers.push_back(center);
-    sizes.push_back(size);
-    surfaces.push_back(x);
   }
 
  private:
-  static Coefficients moved(Coefficients x, const Vec3& shift) {
-    x.values.row(0) += std::sqrt(4 * pi) * shift.transpose();
+  Coefficients surface(const Lying& copy) const {
+    Coefficients x{upright.order, copy.size * upright.values * copy.frame.transpose()};
+    x.values.row(0) += std::sqrt(4 * pi) * copy.center.transpose();
     return x;
   }
   double near(double both) const { return both * copies.extent.reach + copies.gap(); }
-  bool apart(const Vec3& from_centre_to_centre, double both, const Coefficients& first, const Coefficients& second) {
-    const double distance = from_centre_to_centre.norm();
+  bool apart(const Lying& first, const Lying& second) {
+    const double distance = (first.center - second.center).norm(), both = first.size + second.size;
     if (distance > near(both)) return true;
     if (distance < both * copies.extent.core) return false;
-    const Gap g = smallest_gap(plans, std::vector{first, second});
+    if (reaches_into(first, second) || reaches_into(second, first)) return false;
+    const Gap g = gap_of_two(plans, surface(first), surface(second));
     return !g.crossing && g.distance >= copies.gap();
+  }
+  /// Whether that point of a copy which is nearest to the centre of another lies deep in it: a look at one point saves
+  /// the search for the gap of most pairs that overlap.
+  bool reaches_into(const Lying& copy, const Lying& other) const {
+    const Eigen::Matrix3d turn = other.frame.transpose() * copy.frame * (copy.size / other.size);
+    const Vec3 away = other.frame.transpose() * (copy.center - other.center) / other.size;
+    Eigen::Index nearest = 0;
+    const Matrix points = (grid.points * turn.transpose()).rowwise() + away.transpose();
+    points.rowwise().squaredNorm().minCoeff(&nearest);
+    constexpr double deep = 0.9;
+    return winding(grid, points.row(nearest).transpose()) > deep;
   }
   /// Of the images of what lies so far away, the shifts of those that may be near; of the place itself, all but itself.
   /// `both`: the sizes of the two.
   std::vector<Vec3> images(const Vec3& away, double both, bool own) const {
     if (!cell) return own ? std::vector<Vec3>{} : std::vector<Vec3>{Vec3::Zero()};
     const Vec3 number = -(away.array() / cell->array()).round();
+    if (!own && (away + number.cwiseProduct(*cell)).norm() > near(both)) return {};  // that of the nearest
     const Eigen::Vector3i most = (near(both) / cell->array()).ceil().matrix().cast<int>();
     std::vector<Vec3> all;
     for (int a = -most[0]; a <= most[0]; ++a)
@@ -87,13 +103,22 @@ std::string vesicles_of(const Copies& c) {
                      *most * c.extent.radius);
 }
 
-void require_room(const Copies& c, double room, double fullest, const std::optional<Vec3>& cell) {
+/// Where copies are placed, in words, and the keys of which a smaller value gives them more room.
+struct Place {
+  std::string at, keys;
+};
+
+Place place_of(const Copies& c, const std::optional<Vec3>& cell) {
+  return {fmt::format("at a volume fraction of {:.3g}", c.fraction(cell)), cell ? "count" : "volume_fraction"};
+}
+
+void require_room(const Copies& c, double room, double fullest, const Place& place) {
   const double filled = c.filled_share(room);
   if (c.count() > 1 && filled > fullest + (c.p.size_spread > 0 ? more_by_spread : 0))
-    throw std::invalid_argument(fmt::format(
-        "{} {} with gaps of {:.3g} cannot be placed at random at a volume fraction of {:.3g}: "
-        "with half the gap about each they would fill {:.0f} % of the room; give a smaller {} or gap",
-        c.count(), vesicles_of(c), c.gap(), c.fraction(cell), 100 * filled, cell ? "count" : "volume_fraction"));
+    throw std::invalid_argument(
+        fmt::format("{} {} with gaps of {:.3g} cannot be placed at random {}: "
+                    "with half the gap about each they would fill {:.0f} % of the room; give a smaller {} or gap",
+                    c.count(), vesicles_of(c), c.gap(), place.at, 100 * filled, place.keys));
 }
 
 /// Numbers of the copies, the largest first: between small ones there is no room for it later.
@@ -105,10 +130,10 @@ std::vector<std::size_t> by_size(const std::vector<double>& sizes) {
 }
 
 /// Copies at random points of a region, one after another, each free of those before. `point`: for a copy of that size.
-std::vector<VesicleParameters> insert_at_random(const Copies& c, const Room& room,
+std::vector<VesicleParameters> insert_at_random(const Copies& c, const Room& room, const Place& place,
                                                 const std::function<Vec3(std::mt19937_64&, double size)>& point) {
   std::mt19937_64 random(std::uint64_t(c.p.seed));
-  Occupied occupied{c, room.cell};
+  Occupied occupied{c, room.cell, upright_shape(c.original)};
   std::vector<VesicleParameters> all(c.sizes.size());
   constexpr int tries = 2000;
   for (const std::size_t k : by_size(c.sizes)) {
@@ -119,16 +144,16 @@ std::vector<VesicleParameters> insert_at_random(const Copies& c, const Room& roo
       VesicleParameters v = c.copy(k);
       v.center = c.p.center + point(random, c.sizes[k]);
       if (c.p.orientation == "random") v.axis = random_direction(random);
-      const Coefficients x = initial_position(v);
-      found = occupied.free(v.center, c.sizes[k], x);
+      const Lying here{v.center, c.sizes[k], local_frame(v)};
+      found = occupied.free(here);
       if (!found) continue;
-      occupied.take(v.center, c.sizes[k], x);
+      occupied.lying.push_back(here);
       all[k] = std::move(v);
     }
     if (!found)
       throw std::invalid_argument(
-          fmt::format("only {} of {} vesicles could be placed at a volume fraction of {:.3g} with gaps of {:.3g}",
-                      occupied.centers.size(), c.count(), c.fraction(room.cell), c.gap()));
+          fmt::format("only {} of {} {} could be placed at random {} with gaps of {:.3g}; give a smaller {} or gap",
+                      occupied.lying.size(), c.count(), vesicles_of(c), place.at, c.gap(), place.keys));
   }
   return all;
 }
@@ -147,6 +172,27 @@ Eigen::Vector3i places_in(const Vec3& cell, const Vec3& size, int count) {
       }
     }
   return best;
+}
+
+/// A lattice asks for no distance, but its copies must not overlap.
+void require_apart(const Copies& c, const std::vector<VesicleParameters>& all, double spacing, const Room& room) {
+  const auto refuse = [&](const std::string& what) {
+    std::string keys = place_of(c, room.cell).keys;
+    if (c.p.size_spread > 0) keys += " or size_spread";
+    if (c.p.jitter > 0) keys += " or jitter";
+    throw std::invalid_argument(fmt::format("{} {} on a lattice {} overlap: {}; give a smaller {}", c.count(),
+                                            vesicles_of(c), place_of(c, room.cell).at, what, keys));
+  };
+  const double widest = 2 * c.extent.reach * c.largest(), thinnest = 2 * c.extent.core * c.largest();
+  if (spacing * (1 - 2 * c.p.jitter) > widest) return;
+  if (c.fraction(room.cell) > 1 || (room.cell && room.cell->minCoeff() < thinnest))  // images without number
+    return refuse("they are thicker than the room");
+  const Coefficients upright = upright_shape(c.original);
+  std::vector<Coefficients> x;
+  for (std::size_t k = 0; k < all.size(); ++k) x.push_back(laid(all[k], {upright.order, c.sizes[k] * upright.values}));
+  Plans plans;
+  const CellSides sides = room.cell ? CellSides(Eigen::Matrix3d(room.cell->asDiagonal())) : CellSides();
+  if (const Gap gap = smallest_gap(plans, x, sides); gap.crossing) refuse(pair_name(gap) + " of them do");
 }
 
 std::vector<VesicleParameters> lattice(const PlacementParameters& p, const VesicleParameters& original,
@@ -173,6 +219,7 @@ std::vector<VesicleParameters> lattice(const PlacementParameters& p, const Vesic
     if (p.orientation == "random") v.axis = random_direction(random);
     all.push_back(std::move(v));
   }
+  require_apart(copies, all, spacing.minCoeff(), room);
   return all;
 }
 
@@ -229,10 +276,11 @@ std::vector<VesicleParameters> box(const PlacementParameters& p, const VesiclePa
   // Without a cell, vesicles reach out of the box that holds their centres.
   const double beyond = 2 * c.extent.reach * c.mean([](double size) { return size; }) + c.gap();
   const double space = room.cell ? room.cell->prod() : std::pow(side + beyond, 3);
-  require_room(c, space, fullest_packed, room.cell);
+  const Place place = place_of(c, room.cell);
+  require_room(c, space, fullest_packed, place);
   const Vec3 sides = room.cell.value_or(Vec3::Constant(side));
   if (p.size_spread > 0 || c.filled_share(space) > easily_inserted) return packed(c, room, sides);
-  return insert_at_random(c, room, [sides](std::mt19937_64& random, double) {
+  return insert_at_random(c, room, place, [sides](std::mt19937_64& random, double) {
     return Vec3(sides.cwiseProduct(Vec3(uniform(random), uniform(random), uniform(random)) - Vec3::Constant(0.5)));
   });
 }
@@ -246,8 +294,19 @@ std::vector<VesicleParameters> tube(const PlacementParameters& p, const VesicleP
         fmt::format("a tube of radius {:.3g} is narrower than {} vesicle, which reaches {:.3g} from its centre", radius,
                     p.size_spread > 0 ? "the largest" : "a", reach));
   const double length = c.volume() / p.volume_fraction / (pi * radius * radius);
-  require_room(c, pi * std::pow(radius + c.gap() / 2, 2) * (length + 2 * reach + c.gap()), fullest_inserted, {});
-  return insert_at_random(c, room, [&, length](std::mt19937_64& random, double size) {
+  const double wide = radius + c.gap() / 2, across = pi * wide * wide, along = length + 2 * reach + c.gap();
+  double space = across * along;
+  Place place{fmt::format("at a volume fraction of {:.3g} in a tube of radius {:.3g} and length {:.3g}",
+                          p.volume_fraction, radius, length),
+              "volume_fraction"};
+  if (room.cell) {  // a tube that is longer or wider than the cell overlaps its own images
+    const Vec3& cell = *room.cell;
+    space = std::min(along, cell[0]) * std::min(across, std::min(2 * wide, cell[1]) * std::min(2 * wide, cell[2]));
+    place.at += fmt::format(" in a cell of {:.3g} x {:.3g} x {:.3g}", cell[0], cell[1], cell[2]);
+    if (along > cell[0]) place.keys = "count";
+  }
+  require_room(c, space, fullest_inserted, place);
+  return insert_at_random(c, room, place, [&, length](std::mt19937_64& random, double size) {
     const double r = (radius - c.extent.reach * size) * std::sqrt(uniform(random)), f = 2 * pi * uniform(random);
     return Vec3(length * (uniform(random) - 0.5), r * std::cos(f), r * std::sin(f));
   });

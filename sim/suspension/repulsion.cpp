@@ -40,10 +40,8 @@ struct Neighbour {
   Vec3 shift;
 };
 
-std::vector<std::vector<Neighbour>> neighbours(const std::vector<Repeller>& all, double reach, const CellSides& cell) {
-  std::vector<Box> boxes;
-  for (const Repeller& one : all) boxes.push_back(one.sources.box);
-  std::vector<std::vector<Neighbour>> of(all.size());
+std::vector<std::vector<Neighbour>> neighbours(const std::vector<Box>& boxes, double reach, const CellSides& cell) {
+  std::vector<std::vector<Neighbour>> of(boxes.size());
   for (const ImagePair& pair : near_images(boxes, reach, cell)) {
     const Vec3 shift = pair.shift(cell);
     of[std::size_t(pair.first)].push_back({pair.second, shift});
@@ -105,26 +103,43 @@ std::vector<Coefficients> repulsion_forces(Plans& plans, std::span<const Coeffic
                                            const Division& division) {
   const auto n = static_cast<int>(positions.size());
   if (repulsion.strength == 0 || n == 0 || (n < 2 && !cell)) return {};
-  std::vector<std::optional<Repeller>> made(static_cast<std::size_t>(n));
-  parallel_for(n, [&](int i) { made[std::size_t(i)].emplace(repeller(plans, positions[i])); });
-  std::vector<Repeller> all;
-  for (auto& one : made) all.push_back(std::move(*one));
+  // A rank has its own vesicles and their neighbours; of the others it knows where they are and how large.
+  std::vector<std::optional<Repeller>> all(static_cast<std::size_t>(n));
+  std::vector<Box> boxes(static_cast<std::size_t>(n));
+  std::vector<double> radii(static_cast<std::size_t>(n));
+  const auto make = [&](int i) { all[std::size_t(i)].emplace(repeller(plans, positions[i])); };
+  divided_for(
+      division, n,
+      [&](int i) {
+        make(i);
+        boxes[std::size_t(i)] = all[std::size_t(i)]->sources.box;
+        radii[std::size_t(i)] = all[std::size_t(i)]->radius;
+      },
+      [&](Parcel& parcel, int i) {
+        Box& box = boxes[std::size_t(i)];
+        parcel(box.low), parcel(box.high), parcel(radii[std::size_t(i)]);
+      });
   constexpr double ranges = 10;  // beyond it is less than 5e-5 of its strength
-  const double reach = ranges * repulsion.range;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const Repeller& one : all) smallest = std::min(smallest, one.radius);
-  const auto of = neighbours(all, reach, cell);
+  const double reach = ranges * repulsion.range, smallest = *std::min_element(radii.begin(), radii.end());
+  const auto of = neighbours(boxes, reach, cell);
+  std::vector<char> wanted(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i)
+    if (division.mine(i))
+      for (const Neighbour& other : of[std::size_t(i)]) wanted[std::size_t(other.vesicle)] = 1;
+  parallel_for(n, [&](int i) {
+    if (wanted[std::size_t(i)] && !division.mine(i)) make(i);
+  });
   std::vector<Coefficients> forces(static_cast<std::size_t>(n));
   divided_for(division, n, [&](int i) {
     const auto k = std::size_t(i);
     const int p = positions[k].order;
     forces[k] = {p, Matrix::Zero((p + 1) * (p + 1), 3)};
     if (of[k].empty()) return;
-    const Basis& basis = plans.basis(p, repulsion_order(p, all[k].radius, smallest, repulsion.range));
+    const Basis& basis = plans.basis(p, repulsion_order(p, radii[k], smallest, repulsion.range));
     const Matrix points = basis.synthesize(positions[k]).values;
     Matrix traction = Matrix::Zero(points.rows(), 3);
     for (const Neighbour& other : of[k])
-      repel(i, other, all[std::size_t(other.vesicle)], repulsion, reach, points, traction);
+      repel(i, other, *all[std::size_t(other.vesicle)], repulsion, reach, points, traction);
     forces[k] = basis.analyze(traction);
   });
   return forces;

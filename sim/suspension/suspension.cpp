@@ -139,7 +139,7 @@ std::vector<Coefficients> suspension_forcing(const Suspension& s, std::span<cons
 
 namespace {
 
-/// Splits the packed unknowns of all bodies.
+/// Splits the packed unknowns of this rank's bodies; nothing for those of other ranks, whose blocks have no size.
 std::vector<Vector> split(std::span<const Block> blocks, const Vector& y) {
   std::vector<Vector> parts;
   Eigen::Index at = 0;
@@ -159,6 +159,22 @@ Vector join(const std::vector<Vector>& parts) {
     at += part.size();
   }
   return y;
+}
+
+/// Of all ranks' unknowns: one number a vesicle, added in the order of the vesicles, so that the bits of the sum do not
+/// depend on who has which.
+double product_of_parts(std::span<const Block> blocks, const Division& division, const Vector& a, const Vector& b) {
+  std::vector<double> products(blocks.size());
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Eigen::Index size = blocks[i].size;
+    products[i] = a.segment(at, size).dot(b.segment(at, size));
+    at += size;
+  }
+  share(division, products);
+  double sum = 0;
+  for (const double product : products) sum += product;
+  return sum;
 }
 
 /// Left-hand side of the coupled system.
@@ -182,17 +198,13 @@ Vector apply_blocks(std::span<const Block> blocks, const Interaction& interactio
       if (division.mine(i)) velocity[i].values += others[i].values;
   }
   std::vector<Vector> rows(n);
-  divided_for(
-      division, n, [&](int i) { rows[i] = blocks[i].rows(parts[i], velocity[i]); },
-      [&](Parcel& parcel, int i) { parcel(rows[i]); });
+  divided_for(division, n, [&](int i) { rows[i] = blocks[i].rows(parts[i], velocity[i]); });
   return join(rows);
 }
 
 Vector precondition_blocks(std::span<const Block> blocks, const Division& division, const Vector& y) {
   std::vector<Vector> parts = split(blocks, y);
-  divided_for(
-      division, int(blocks.size()), [&](int i) { parts[i] = blocks[i].precondition(parts[i]); },
-      [&](Parcel& parcel, int i) { parcel(parts[i]); });
+  divided_for(division, int(blocks.size()), [&](int i) { parts[i] = blocks[i].precondition(parts[i]); });
   return join(parts);
 }
 
@@ -216,12 +228,12 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
     start[i] = packed({{m.order(), guess[i].velocity.values - rigid[i].values}, guess[i].tension});
     if (m.pinned) start[i][start[i].size() - coefficient_count(m.order())] = 0;
   };
-  divided_for(s.division, n, prepare,
-              [&](Parcel& parcel, int i) { parcel(blocks[i].size), parcel(right[i]), parcel(start[i]); });
+  divided_for(s.division, n, prepare);
   constexpr int most_iterations = 300;
-  const GmresResult result = gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, s.division, y); },
-                                   [&](const Vector& y) { return precondition_blocks(blocks, s.division, y); },
-                                   join(right), join(start), tolerance, most_iterations);
+  const GmresResult result = gmres(
+      [&](const Vector& y) { return apply_blocks(blocks, s.interaction, s.division, y); },
+      [&](const Vector& y) { return precondition_blocks(blocks, s.division, y); }, join(right), join(start), tolerance,
+      most_iterations, [&](const Vector& a, const Vector& b) { return product_of_parts(blocks, s.division, a, b); });
   SuspensionSolve solve{std::vector<Motion>(n), result.iterations, result.residual, result.converged};
   const std::vector<Vector> parts = split(blocks, result.solution);
   for (int i = 0; i < n; ++i) {

@@ -67,7 +67,7 @@ Vec3 faster_by(const FlowField& field, const Vec3& x, const Vec3& shift) {
 int sort_point(const FlowField& field, PointBlock& block, int number, int k, const Vec3& x) {
   View& view = block.views[std::size_t(number)];
   const Sources& coarse = (*field.coarse)[std::size_t(view.source)];
-  const auto [at, away] = nearest_source(coarse, x);
+  const auto [at, away] = nearest_source(field.sources[std::size_t(view.source)].tiles, x);
   // The membrane may come nearer between source points: the nearest is at most half a diagonal of a cell off.
   const double spacing = coarse.spacing[at], distance = away - 0.71 * spacing;
   std::size_t halvings = 0;
@@ -234,6 +234,7 @@ FlowField flow_field(Plans& plans, const Scene& scene, const State& state, const
     const int order = std::max(2 * p, 24);
     source.directions = grid_directions(plans.basis(p, order));
     FlowSource::Level whole = level(plans, source, order);
+    source.tiles = make_tiles(plans.basis(p, order), whole.sources);
     coarse.push_back(std::move(whole.sources));
     field.coarse_densities.push_back(std::move(whole.densities));
     parallel_for(int(source.finer.size()), [&](int k) { source.finer[k] = level(plans, source, order << (k + 1)); });

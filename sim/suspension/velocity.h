@@ -12,6 +12,7 @@
 // vesicle does and as u_inf differs between them.
 #pragma once
 
+#include "sim/layers/source_tiles.h"
 #include "sim/suspension/flow_images.h"
 #include "sim/suspension/suspension.h"
 
@@ -37,6 +38,7 @@ struct FlowSource {
   double viscosity_contrast = 1;
   RigidMotion rigid;           ///< of the velocity
   Matrix directions;           ///< parameters of the coarsest level's points, unit vectors
+  SourceTiles tiles;           ///< of these points
   std::array<Level, 2> finer;  ///< each spacing half of the one before, the first half of the coarse grid's
   const RotationPlan* rotation = nullptr;
 };

@@ -381,6 +381,7 @@ TEST_CASE("a cell with its copies looks like a cell of as many cells, also while
   const auto refused = [](const Desk& desk, const char* copies) {
     return desk({"render", desk.file("t.h5"), "--time", "0", "--set", std::string("view.copies=") + copies}).err;
   };
+  CHECK_THAT(refused(one, "1"), Contains("'copies' must be a list, [..., ...]: how many copies of a periodic cell"));
   CHECK_THAT(refused(one, "[1, 1]"), Contains("'copies' must be three whole numbers"));
   CHECK_THAT(refused(nine, "[10, 10, 10]"), Contains("166698 vesicles and copies are too many"));
   const Desk open;

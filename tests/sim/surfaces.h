@@ -1,9 +1,11 @@
 // Surfaces and fields that the tests of sim share.
 #pragma once
 
+#include "sim/membrane/cell.h"
 #include "sim/membrane/membrane.h"
 #include "sim/stepping/stepper.h"
 #include "sim/surface/shapes.h"
+#include "sim/suspension/gap.h"
 
 #include <cmath>
 #include <numbers>
@@ -95,6 +97,28 @@ inline sim::Scene shear_scene(const sim::VesicleParameters& v, double step, doub
 inline sim::Dynamics advanced(const sim::Model& s, sim::Dynamics d, double dt, int count) {
   for (int k = 0; k < count; ++k) d = sim::take_step(s, d, dt).value().dynamics;
   return d;
+}
+
+/// Between the vesicles of a scene, as they start, and their images; negative where they cross.
+inline double starting_gap(const sim::Scene& scene) {
+  std::vector<sim::Coefficients> x;
+  for (const sim::VesicleParameters& v : scene.vesicles) x.push_back(sim::initial_position(v));
+  sim::Plans plans;
+  const sim::Gap gap = sim::smallest_gap(plans, x, sim::cell_at(scene, 0));
+  return gap.crossing ? -1 : gap.distance;
+}
+
+/// Of the velocity of a fluid, by central differences over 2e-3.
+template <class Field>
+double divergence(const Field& field, const sim::Vec3& at) {
+  constexpr double h = 1e-3;
+  sim::Matrix x(6, 3);
+  for (int d = 0; d < 3; ++d) {
+    x.row(2 * d) = (at + h * sim::Vec3::Unit(d)).transpose();
+    x.row(2 * d + 1) = (at - h * sim::Vec3::Unit(d)).transpose();
+  }
+  const sim::Matrix u = velocity_at(field, x).velocity;
+  return (u(0, 0) - u(1, 0) + u(2, 1) - u(3, 1) + u(4, 2) - u(5, 2)) / (2 * h);
 }
 
 inline sim::Matrix cross_rows(const sim::Vec3& w, const sim::Matrix& x) {

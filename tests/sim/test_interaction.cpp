@@ -73,14 +73,13 @@ TEST_CASE("the nearest source is found in tiles as among all points, and none be
   std::srand(3);
   for (int k = 0; k < 500; ++k) {
     const Vec3 at = (k % 2 ? 0.9 : 3.0) * Vec3::Random();
-    const auto [source, distance] = nearest_source(sources, at);
+    Eigen::Index source = 0;
+    const double distance = (sources.points.rowwise() - at.transpose()).rowwise().norm().minCoeff(&source);
     const auto [found, near] = nearest_source(tiles, at);
     CHECK(found == source);
     CHECK(near == Approx(distance).epsilon(1e-14));
     CHECK(nearest_source(tiles, at, 0.999 * distance).first == -1);
     CHECK(nearest_source(tiles, at, 1.001 * distance).first == source);
-    const Vec3 by(5, -2, 1e3);
-    CHECK(nearest_source(moved(tiles, by), at + by).second == Approx(distance).epsilon(1e-9));
   }
 }
 
@@ -406,15 +405,10 @@ TEST_CASE(
     INFO(row.name);
     REQUIRE(full.vesicles.size() == 8);
     CHECK(full.placements.empty());
-    std::vector<Coefficients> x;
-    for (std::size_t k = 0; k < 8; ++k) {
-      CHECK(full.vesicles[k].center == again.vesicles[k].center);
-      x.push_back(initial_position(full.vesicles[k]));
-    }
-    Plans plans;
-    const Gap gap = smallest_gap(plans, x);
-    CHECK_FALSE(gap.crossing);
-    if (row.name != "lattice") CHECK(gap.distance >= default_placement_gap * (1 - 1e-6));
+    for (std::size_t k = 0; k < 8; ++k) CHECK(full.vesicles[k].center == again.vesicles[k].center);
+    const double gap = test::starting_gap(full);
+    CHECK(gap > 0);
+    if (row.name != "lattice") CHECK(gap >= default_placement_gap * (1 - 1e-6));
   }
 }
 
@@ -426,7 +420,7 @@ TEST_CASE(
   p.count = 60;
   p.volume_fraction = 0.45;
   scene.placements = {p};
-  CHECK_THROWS_WITH(placed(scene), Catch::Contains("of 60 vesicles could be placed"));
+  CHECK_THROWS_WITH(placed(scene), Catch::Contains("of 60 vesicles of radius 1 could be placed"));
   scene.placements[0].kind = "box";
   scene.placements[0].volume_fraction = 0.74;
   scene.placements[0].gap = 0.2;

@@ -95,13 +95,10 @@ TEST_CASE(
     s.placements[0].seed = 2;
     const Scene other = placed(s);
     REQUIRE(int(full.vesicles.size()) == p.count);
-    Plans plans;
-    std::vector<Coefficients> x;
     std::vector<double> radii;
     volume = 0;
     for (std::size_t k = 0; k < full.vesicles.size(); ++k) {
       const VesicleParameters& one = full.vesicles[k];
-      x.push_back(initial_position(one));
       const AreaVolume size = size_of(one);
       CHECK(reduced_volume(size.area, size.volume) == Approx(reduced_volume(original.area, original.volume)));
       CHECK(one.bending_modulus == 0.07);
@@ -116,9 +113,7 @@ TEST_CASE(
     // Of forty, one in each fortieth of the distribution; the uppermost has a part in the spread.
     CHECK(mean(radii) == Approx(1).margin(0.1 * wanted));
     CHECK(spread(radii) == Approx(wanted).epsilon(0.25));
-    const Gap gap = smallest_gap(plans, x, cell_at(s, 0));
-    CHECK(!gap.crossing);
-    CHECK(gap.distance >= default_placement_gap * own_radius * (1 - 1e-6));
+    CHECK(test::starting_gap(full) >= default_placement_gap * own_radius * (1 - 1e-6));
   }
 }
 
@@ -129,7 +124,7 @@ TEST_CASE("the volume fraction of a placement of many sizes is that of the sizes
     PlacementParameters p;
     p.kind = kind;
     p.count = 27;
-    p.volume_fraction = 0.1;
+    p.volume_fraction = kind == "lattice" ? 0.02 : 0.1;  // a lattice makes no room for large ones
     p.size_spread = 0.4;
     if (kind == "tube") p.radius = 4;
     p.orientation = kind == "box" ? "random" : "as-given";
@@ -157,18 +152,56 @@ TEST_CASE("the volume fraction of a placement of many sizes is that of the sizes
       }
     }
     if (kind == "lattice") continue;  // it asks for no distance
-    Plans plans;
-    const Gap gap = smallest_gap(plans, x);
-    CHECK(!gap.crossing);
-    CHECK(gap.distance >= default_placement_gap * (1 - 1e-6));
+    CHECK(test::starting_gap(full) >= default_placement_gap * (1 - 1e-6));
   }
   Scene s = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
   PlacementParameters p;
+  p.count = 27;
+  p.volume_fraction = 0.5;
+  p.size_spread = 0.4;
+  s.placements = {p};
+  CHECK_THROWS_WITH(placed(s), Catch::Contains("overlap: vesicles") &&
+                                   Catch::Contains("give a smaller volume_fraction or size_spread"));
+  s.placements[0].size_spread = 0;
+  s.cell.size = Vec3(1.5, 1.5, 1.5);  // a volume fraction of 33
+  CHECK_THROWS_WITH(placed(s), Catch::Contains("on a lattice at a volume fraction of 33.5 overlap") &&
+                                   Catch::Contains("give a smaller count"));
+  s.cell.size.reset();
   p.kind = "tube";
   p.count = 200;
   p.size_spread = 1;
   s.placements = {p};
   CHECK_THROWS_WITH(placed(s), Catch::Contains("narrower than the largest vesicle, which reaches"));
+}
+
+TEST_CASE("a tube in a periodic cell is filled apart from all images, or refused with its radius and length") {
+  Scene s = test::shear_scene(test::vesicle("prolate", 0.9, 6), 0.1, 1);
+  PlacementParameters p;
+  p.kind = "tube";
+  p.count = 40;
+  p.volume_fraction = 0.1;
+  s.placements = {p};
+  s.cell.size = Vec3(60, 6.2, 6.2);
+  int asked = 0;
+  const auto count = [&] { return ++asked < 0; };
+  const Scene full = placed(s, count);
+  CHECK(full.vesicles.size() == 40);
+  CHECK(asked >= 40);
+  // Just wide enough: what is at the wall is near the images of what is at the other.
+  CHECK(test::starting_gap(full) >= default_placement_gap * (1 - 1e-6));
+  s.cell.size = Vec3(10, 8, 8);  // a sixth of the length: there is no room
+  asked = 0;
+  CHECK_THROWS_WITH(placed(s, count), Catch::Contains("in a tube of radius 3 and length 53") &&
+                                          Catch::Contains("in a cell of 10 x 8 x 8") &&
+                                          Catch::Contains("give a smaller count or gap"));
+  CHECK(asked == 0);
+  s.cell.size = Vec3(28, 8, 8);  // half of it: the search jams
+  CHECK_THROWS_WITH(placed(s, count), Catch::Contains("of 40 vesicles of radius 1 could be placed") &&
+                                          Catch::Contains("in a tube of radius 3 and length 53"));
+  s.cell.size.reset();
+  s.placements[0].volume_fraction = 0.5;
+  CHECK_THROWS_WITH(placed(s, count), Catch::Contains("in a tube of radius 3 and length 10.7") &&
+                                          Catch::Contains("give a smaller volume_fraction or gap"));
 }
 
 TEST_CASE("places of many sizes scale with the vesicle, from a micrometre to a thousand kilometres") {

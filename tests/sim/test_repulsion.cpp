@@ -119,3 +119,35 @@ TEST_CASE("a range of a thousandth of a radius is taken in any unit, and a short
                       Catch::Contains("repulsion_range") && Catch::Contains("at least"));
   }
 }
+
+TEST_CASE("magnitudes that leave no digits for the shape are refused by their key") {
+  Plans plans;
+  const auto refused = [&](const Scene& scene) {
+    try {
+      initial_dynamics(make_model(scene, plans));
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  Scene usual = test::shear_scene(test::vesicle("prolate", 0.9, 4), 0.1, 1);
+  usual.vesicles.push_back(usual.vesicles[0]);
+  usual.vesicles[1].center = Vec3(0, 0, 4);
+  usual.numerics.repulsion_strength = 1e6;
+  usual.buoyancy.gravity = Vec3(0, 0, -1);
+  CHECK(refused(usual).empty());
+  for (const double large : {1e30, 1e300}) {
+    Scene s = usual;
+    s.numerics.repulsion_strength = large;
+    CHECK_THAT(refused(s), Catch::Contains("numerics.repulsion_strength = 1e+") && Catch::Contains("too large"));
+    s = usual;
+    s.vesicles[1].bending_modulus = large;
+    CHECK_THAT(refused(s), Catch::Contains("vesicle.bending_modulus = 1e+") && Catch::Contains("vesicle 1"));
+    s = usual;
+    s.flows[0].rate = large;
+    CHECK_THAT(refused(s), Catch::Contains("the [[flow]] 'shear' is too large"));
+    s = usual;
+    s.vesicles[0].density_difference = large;
+    CHECK_THAT(refused(s), Catch::Contains("vesicle.density_difference = 1e+"));
+  }
+}
