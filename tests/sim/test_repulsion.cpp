@@ -108,7 +108,7 @@ TEST_CASE("a range of a thousandth of a radius is taken in any unit, and a short
   for (const double unit : {1e-6, 1.0, 1e6}) {
     Scene scene = test::shear_scene(test::vesicle("sphere", 1, 4), 0.1, 1);
     scene.vesicles.push_back(scene.vesicles[0]);
-    for (VesicleParameters& v : scene.vesicles) v.radius = unit;
+    for (VesicleParameters& v : scene.vesicles) v.radius = unit, v.bending_modulus *= unit * unit * unit;
     scene.vesicles[1].center = {0, 0, 3 * unit};
     scene.numerics.repulsion_strength = 1;
     Plans plans;
