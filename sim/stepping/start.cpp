@@ -68,18 +68,19 @@ void check_repulsion(const Model& s, const Dynamics& d) {
                     least));
 }
 
-/// By how many of its radii, or strains, each cause of motion moves a vesicle until the end; beyond `most` a double has
-/// no digits left for the shape. Throws std::invalid_argument, which names the key.
+/// By how many of its radii, or strains, each cause of motion moves a vesicle until the end: by flows, weights and
+/// contacts no further than a double has digits left for the shape; bending only brings a shape to rest, and must be a
+/// number with which can be computed. Throws std::invalid_argument, which names the key.
 void check_magnitudes(const Model& s, const Dynamics& d) {
-  constexpr double most = 1e15;
+  constexpr double furthest = 1e15, stiffest = 1e100;
   const Scene& scene = s.scene;
   const double time = std::max(scene.time.end, scene.time.step.value_or(0));
   const auto check = [&](double rate, const std::string& what, std::size_t vesicle) {
-    if (!(rate * time <= most) || !(rate * rate < std::numeric_limits<double>::max()))
+    if (!(rate * time <= furthest))
       throw std::invalid_argument(
           fmt::format("{} is too large to compute with: until time.end = {:g} it would move vesicle {} by {:.2g} times "
                       "its radius; beyond {:.0e} no digits are left for its shape",
-                      what, scene.time.end, vesicle, rate * time, most));
+                      what, scene.time.end, vesicle, rate * time, furthest));
   };
   for (std::size_t k = 0; k < d.vesicles.size(); ++k) {
     const VesicleDynamics& v = d.vesicles[k];
@@ -94,7 +95,9 @@ void check_magnitudes(const Model& s, const Dynamics& d) {
       check(speed / radius, fmt::format("the [[flow]] '{}'", flow.kind), k);
     }
     const Material& m = s.materials[k];
-    check(m.bending_modulus / std::pow(radius, 3), fmt::format("vesicle.bending_modulus = {:g}", m.bending_modulus), k);
+    if (!(m.bending_modulus / std::pow(radius, 3) <= stiffest))
+      throw std::invalid_argument(fmt::format(
+          "vesicle.bending_modulus = {:g} of vesicle {} is too large to compute with", m.bending_modulus, k));
     check(std::abs(m.density_difference) * scene.buoyancy.gravity.norm() * radius,
           fmt::format("vesicle.density_difference = {:g} in buoyancy.gravity", m.density_difference), k);
     if (d.vesicles.size() > 1 || scene.cell.size)
