@@ -68,12 +68,6 @@ Matrix parameter_velocity(const FirstDerivatives& x, const Matrix& w) {
   return rates;
 }
 
-/// The same at a point, from the tangents there.
-Eigen::Vector2d tangential_rates(const Vec3& a, const Vec3& b, const Vec3& w) {
-  const double E = a.dot(a), F = a.dot(b), G = b.dot(b);
-  return Eigen::Vector2d(G * a.dot(w) - F * b.dot(w), E * b.dot(w) - F * a.dot(w)) / (E * G - F * F);
-}
-
 /// y' = f(time, y) over [from, to] in so many steps.
 template <class F>
 Matrix runge_kutta(Matrix y, double from, double to, int steps, F&& f) {
@@ -155,8 +149,7 @@ Matrix slid_points(const SlidingPath& path, const Matrix& parameters, double fro
     for (Eigen::Index k = 0; k < points.rows(); ++k) {
       const Vec3 s = points.row(k).transpose();
       const PointTangents x = position.tangents(s);
-      const Eigen::Vector2d rates = tangential_rates(x.a, x.b, sliding.position(s));
-      change.row(k) = -(rates[0] * x.e1 + rates[1] * x.e2).transpose();
+      change.row(k) = parameter_shift(x.e1, x.e2, x.a, x.b, -sliding.position(s)).transpose();
     }
     return change;
   };

@@ -8,15 +8,17 @@
 
 namespace sim {
 
-namespace {
-
-/// Tangential step on the sphere that moves the surface point by the tangential part of `shift` (least squares).
-Vec3 parameter_shift(const SphereFrame& frame, const Vec3& x_t, const Vec3& x_f, const Vec3& shift) {
-  const Vec3& a = x_t;
-  const Vec3 b = x_f / frame.sin_theta;
+Vec3 parameter_shift(const Vec3& e1, const Vec3& e2, const Vec3& a, const Vec3& b, const Vec3& shift) {
   const double aa = a.dot(a), ab = a.dot(b), bb = b.dot(b), det = aa * bb - ab * ab;
   const double u = a.dot(shift), v = b.dot(shift);
-  return ((bb * u - ab * v) * frame.e_theta + (aa * v - ab * u) * frame.e_phi) / det;
+  return ((bb * u - ab * v) * e1 + (aa * v - ab * u) * e2) / det;
+}
+
+namespace {
+
+/// The same from derivatives in the angles.
+Vec3 parameter_shift(const SphereFrame& frame, const Vec3& x_t, const Vec3& x_f, const Vec3& shift) {
+  return sim::parameter_shift(frame.e_theta, frame.e_phi, x_t, x_f / frame.sin_theta, shift);
 }
 
 }  // namespace

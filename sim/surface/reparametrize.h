@@ -11,6 +11,10 @@
 
 namespace sim {
 
+/// Step on the parameter sphere that moves a point of the surface by the tangential part of `shift` (least squares):
+/// along e1 and e2, tangents of the sphere, along which the position has the derivatives a and b.
+Vec3 parameter_shift(const Vec3& e1, const Vec3& e2, const Vec3& a, const Vec3& b, const Vec3& shift);
+
 /// s = map(s'): the normalised sum of these coefficients (3 fields, of the degree of the grid it was found on).
 struct Relabelling {
   Coefficients map;
