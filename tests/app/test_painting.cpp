@@ -142,9 +142,11 @@ TEST_CASE(
           Approx(panels[k + 2].arrow_speed / panels[k + 2].framing.half_height));
 }
 
-TEST_CASE("where copies of a cell fill the picture the net of arrows is finer, elsewhere it is the usual one") {
-  const support::TemporaryFolder folder;
-  app::Settings settings = app::parse_scene(R"([flow]
+namespace {
+
+/// A sphere in a cell of three radii, in shear for a tenth of a unit of time.
+app::Settings sphere_in_cell(const std::string& view) {
+  return app::parse_scene(R"([flow]
 kind = "shear"
 [time]
 end = 0.1
@@ -155,14 +157,23 @@ size = [3, 3, 3]
 shape = "sphere"
 order = 4
 [view]
-size = [1280, 720]
-views = ["flow-gradient", "along-flow"]
-)",
-                                            "s.toml", ".");
+)" + view,
+                          "s.toml", ".");
+}
+
+std::string simulated(const app::Settings& settings, const support::TemporaryFolder& folder) {
   sim::SimulationOptions options;
   options.trajectory = (folder / "t.h5").string();
   sim::simulate(settings.scene, options, {});
-  const sim::TrajectoryReader trajectory(options.trajectory);
+  return options.trajectory;
+}
+
+}  // namespace
+
+TEST_CASE("where copies of a cell fill the picture the net of arrows is finer, elsewhere it is the usual one") {
+  const support::TemporaryFolder folder;
+  app::Settings settings = sphere_in_cell("size = [1280, 720]\nviews = [\"flow-gradient\", \"along-flow\"]\n");
+  const sim::TrajectoryReader trajectory(simulated(settings, folder));
   const auto net = [&] { return app::prepare_pictures({{trajectory, settings}}).panels.front().arrow_net; };
   CHECK(net() == 1);
   settings.view.copies = {2, 0, 2};
@@ -171,25 +182,8 @@ views = ["flow-gradient", "along-flow"]
 
 TEST_CASE("no streamline of a picture is a stub") {
   const support::TemporaryFolder folder;
-  app::Settings settings = app::parse_scene(R"([flow]
-kind = "shear"
-[time]
-end = 0.1
-step = 0.1
-[cell]
-size = [3, 3, 3]
-[[vesicle]]
-shape = "sphere"
-order = 4
-[view]
-size = [640, 360]
-streamlines = "laboratory"
-)",
-                                            "s.toml", ".");
-  sim::SimulationOptions options;
-  options.trajectory = (folder / "t.h5").string();
-  sim::simulate(settings.scene, options, {});
-  const sim::TrajectoryReader trajectory(options.trajectory);
+  const app::Settings settings = sphere_in_cell("size = [640, 360]\nstreamlines = \"laboratory\"\n");
+  const sim::TrajectoryReader trajectory(simulated(settings, folder));
   const app::ViewPanel panel = app::prepare_pictures({{trajectory, settings}}).panels.front();
   const sim::State state = trajectory.state(0);
   const render::Camera camera = render::make_camera(panel.framing, panel.framing.moment(render::summarize(state)));
