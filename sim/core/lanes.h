@@ -11,6 +11,45 @@ namespace sim {
 constexpr int lanes = 4;
 using Lane = double __attribute__((vector_size(lanes * sizeof(double))));
 
+/// Twice as many, for code that is compiled for AVX-512 beside the instruction set of the rest and run where
+/// has_wide_lanes().
+using WideLane = double __attribute__((vector_size(2 * lanes * sizeof(double))));
+template <class Vector>
+constexpr int width_of = int(sizeof(Vector) / sizeof(double));
+
+#if defined(__x86_64__)
+#if defined(__clang__)
+#define TANKTREAD_WIDE [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,avx512cd")]]
+#else  // takes half the width where it may choose, unless told
+#define TANKTREAD_WIDE [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,avx512cd,prefer-vector-width=512")]]
+#endif
+inline bool has_wide_lanes() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
+}
+#else
+#define TANKTREAD_WIDE
+inline bool has_wide_lanes() { return false; }
+#endif
+
+/// Runs a step in a function of its own, which has the instruction set of its vectors. The step, and what it calls with
+/// vectors, must be inlined into it ([[gnu::always_inline]]), and gives no vectors by value.
+template <class Step>
+[[gnu::noinline]] void run_with_lanes(const Step& step) {
+  step();
+}
+template <class Step>
+TANKTREAD_WIDE [[gnu::noinline]] void run_with_wide_lanes(const Step& step) {
+  step();
+}
+template <class Vector, class Step>
+void run_apart(const Step& step) {
+  if constexpr (width_of < Vector >> lanes)
+    run_with_wide_lanes(step);
+  else
+    run_with_lanes(step);
+}
+
 template <class Real>
 struct LaneType;
 template <>
@@ -41,14 +80,16 @@ void store_lane(Real* to, LaneOf<Real> v) {
 }
 
 /// Uninitialised aligned memory for vectors.
-struct LaneBuffer {
-  explicit LaneBuffer(std::size_t n) : data(new (std::align_val_t(64)) Lane[n]) {}
+template <class Vector>
+struct BufferOf {
+  explicit BufferOf(std::size_t n) : data(new (std::align_val_t(64)) Vector[n]) {}
   struct Free {
-    void operator()(Lane* p) const { ::operator delete[](p, std::align_val_t(64)); }
+    void operator()(Vector* p) const { ::operator delete[](p, std::align_val_t(64)); }
   };
-  std::unique_ptr<Lane[], Free> data;
-  Lane* get() const { return data.get(); }
+  std::unique_ptr<Vector[], Free> data;
+  [[gnu::always_inline]] Vector* get() const { return data.get(); }
 };
+using LaneBuffer = BufferOf<Lane>;
 
 /// Uninitialised memory of a function's own: on the stack, unless it is long.
 template <class T, std::size_t few>
@@ -71,11 +112,21 @@ class Scratch {
 };
 using LaneScratch = Scratch<Lane, 4096>;
 
+/// v = its roots. Wide vectors are given by reference, since others pass them otherwise.
+template <class Vector>
+[[gnu::always_inline]] inline void take_root(Vector& v) {
+  for (unsigned i = 0; i < sizeof v / sizeof v[0]; ++i) v[i] = std::sqrt(v[i]);
+}
 template <class Vector>
 Vector lane_sqrt(Vector v) {
-  Vector r{};
-  for (unsigned i = 0; i < sizeof v / sizeof v[0]; ++i) r[i] = std::sqrt(v[i]);
-  return r;
+  take_root(v);
+  return v;
+}
+
+/// Any address, any width.
+template <class Vector>
+[[gnu::always_inline]] inline void load(const double* from, Vector& v) {
+  __builtin_memcpy(&v, from, sizeof v);
 }
 
 }  // namespace sim

@@ -6,11 +6,11 @@
 namespace sim {
 
 /// One to four vectors as named members, which compilers keep in registers where arrays would go through memory.
-template <int W>
+template <int W, class Vector = Lane>
 struct Pack {
-  Lane a{}, b{}, c{}, d{};
+  Vector a{}, b{}, c{}, d{};
 
-  static Pack load(const Lane* x) {
+  [[gnu::always_inline]] static Pack load(const Vector* x) {
     Pack v;
     v.a = x[0];
     if constexpr (W > 1) v.b = x[1];
@@ -18,26 +18,30 @@ struct Pack {
     if constexpr (W > 3) v.d = x[3];
     return v;
   }
-  void store(Lane* x) const {
+  [[gnu::always_inline]] void store(Vector* x) const {
     x[0] = a;
     if constexpr (W > 1) x[1] = b;
     if constexpr (W > 2) x[2] = c;
     if constexpr (W > 3) x[3] = d;
   }
-  void add(double k, const Lane* x) {
+  [[gnu::always_inline]] void add(double k, const Vector* x) {
     a += k * x[0];
     if constexpr (W > 1) b += k * x[1];
     if constexpr (W > 2) c += k * x[2];
     if constexpr (W > 3) d += k * x[3];
   }
-  void add(double k, const Pack& x) {
+  [[gnu::always_inline]] void add(double k, const Pack& x) {
     a += k * x.a;
     if constexpr (W > 1) b += k * x.b;
     if constexpr (W > 2) c += k * x.c;
     if constexpr (W > 3) d += k * x.d;
   }
-  friend Pack operator+(const Pack& x, const Pack& y) { return {x.a + y.a, x.b + y.b, x.c + y.c, x.d + y.d}; }
-  friend Pack operator-(const Pack& x, const Pack& y) { return {x.a - y.a, x.b - y.b, x.c - y.c, x.d - y.d}; }
+  [[gnu::always_inline]] friend Pack operator+(const Pack& x, const Pack& y) {
+    return {x.a + y.a, x.b + y.b, x.c + y.c, x.d + y.d};
+  }
+  [[gnu::always_inline]] friend Pack operator-(const Pack& x, const Pack& y) {
+    return {x.a - y.a, x.b - y.b, x.c - y.c, x.d - y.d};
+  }
 };
 
 /// Sums over the lanes of each of four vectors.

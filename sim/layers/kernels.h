@@ -20,21 +20,27 @@ struct KernelTensor {
 
 /// G times a weight; inverse: 1/|r|. Without stokeslet_factor.
 template <class T, class Weight>
-KernelTensor<T> stokeslet(const T& inverse, const Weight& weight) {
+[[gnu::always_inline]] inline KernelTensor<T> stokeslet(const T& inverse, const Weight& weight) {
   const T even = weight * inverse;
   return {even, even * (inverse * inverse)};
 }
 
 /// The outer part of T for the given r.n, in which the weight may be; the even one is 0. Without stresslet_factor.
 template <class T>
-T stresslet(const T& inverse, const T& rn) {
+[[gnu::always_inline]] inline void stresslet(const T& inverse, const T& rn, T& outer) {
   const T square = inverse * inverse;
-  return rn * (square * square * inverse);
+  outer = rn * (square * square * inverse);
+}
+template <class T>
+T stresslet(const T& inverse, const T& rn) {
+  T outer;
+  stresslet(inverse, rn, outer);
+  return outer;
 }
 
 /// The six distinct components xx, xy, xz, yy, yz, zz of the outer part.
 template <class T>
-void outer_components(const T& outer, const T (&r)[3], T* out) {
+[[gnu::always_inline]] inline void outer_components(const T& outer, const T (&r)[3], T* out) {
   const T x = outer * r[0], y = outer * r[1];
   out[0] = x * r[0];
   out[1] = x * r[1];

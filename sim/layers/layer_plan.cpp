@@ -7,14 +7,16 @@
 
 namespace sim {
 
-LayerPotentials::Plan::Plan(int order, int source_order)
+LayerPotentials::Plan::Plan(int order, int source_order, bool wide_lanes)
     : p(order),
       q(order + 1),
       s(source_order > 0 ? source_order : order + 1),
       target(order, order + 1),
       source(order, source_order > 0 ? source_order : order + 1),
       target_rows(target),
-      source_rows(source) {
+      source_rows(source),
+      longitudes(target.nlon + target.nlon / 2 + width_of<WideLane>),
+      wide(wide_lanes && has_wide_lanes()) {
   if (s < p) throw std::invalid_argument("LayerPotentials: the source order must be at least p");
   for (int k = 0; k <= s; ++k) {
     const double t = source.theta[k], z = std::cos(t);
@@ -27,14 +29,20 @@ LayerPotentials::Plan::Plan(int order, int source_order)
     }
     singular_weight.push_back(source.weight[k] * std::numbers::pi / (s + 1) * sum * 2 * std::sin(t / 2) / std::sin(t));
   }
-  for (int first = 0; first < target.nlon; first += lanes) {
-    turns.push_back(turn_of(first));
-    opposite_turns.push_back(turn_of(first + target.nlon / 2));
-  }
+  for (int m = 0; m <= p; ++m)
+    for (int j = 0; j < longitudes; ++j) {
+      const double angle = 2 * std::numbers::pi * double((std::int64_t(m) * j) % target.nlon) / target.nlon;
+      cosine.push_back(std::cos(angle));
+      sine.push_back(std::sin(angle));
+    }
   for (int i = 0; i < target.half; ++i) {
-    const int longitudes = target.mirror(i) == i ? target.nlon / 2 : target.nlon;  // the equator is its own antipode
-    for (int first = 0; first < longitudes; first += lanes)
-      tiles.push_back({i, first / lanes, std::min(lanes, longitudes - first)});
+    const int own = target.mirror(i) == i ? target.nlon / 2 : target.nlon;  // the equator is its own antipode
+    for (int first = 0; first < own;) {
+      const bool eight = wide && own - first > lanes;
+      const int targets = std::min(eight ? width_of<WideLane> : lanes, own - first);
+      tiles.push_back({i, first, targets, eight});
+      first += targets;
+    }
   }
   // W_i: the basis at points turned by Ry(theta_i), projected on a p-grid, where the product is integrated exactly.
   const Basis basis(p, p);

@@ -18,29 +18,25 @@ struct LayerPotentials::Plan {
     std::vector<double> cosine, sine, cosine_t, sine_t;
   };
   std::vector<std::vector<Rotation>> rotations;  ///< [target latitude][n]
-  struct Turn {  ///< the z-rotation by phi of four targets, one a lane: cos(m phi), sin(m phi)
-    std::vector<Lane> cosine, sine;
-  };
-  std::vector<Turn> turns, opposite_turns;  ///< of each tile of four longitudes, and of that half a turn further
+  /// The z-rotations by the targets' longitudes: cos(m phi), sin(m phi), [m][longitude], going round more than once and
+  /// a half, so that the lanes of any tile and of its antipodes follow one another.
+  std::vector<double> cosine, sine;
+  int longitudes;  ///< of a row of these
 
-  /// Four targets and their antipodes, which see the same source points.
+  /// Targets of one latitude and their antipodes, which see the same source points, one a lane.
   struct Tile {
-    int latitude, tile;
-    int targets;  ///< up to four; the other lanes are idle
+    int latitude, first;  ///< first: longitude
+    int targets;          ///< up to the number of lanes; the others are idle
+    bool wide;            ///< of WideLane instead of Lane
   };
   std::vector<Tile> tiles;  ///< with their antipodes all targets, each once
+  bool wide;
 
-  Plan(int order, int source_order);
-  struct Scratch;
-  Turn turn_of(int first) const;
-  void to_pole(int latitude, const Turn&, const Coefficients& x, Scratch&) const;
-  void along_latitudes(Scratch&) const;
-  void spectra_of(int i, Scratch&) const;
-  void points_of(int lat, Scratch&) const;
-  void fold_kernels(int i, const Lane* target_x, bool antipode, bool with_double, Scratch&) const;
-  void from_pole(int latitude, const Turn&, int used, Scratch&) const;
-  void write_rows(const Lane* back, const Tile&, bool antipode, int used, double* rows) const;
-  void rows_of_tile(const Tile&, const Coefficients& x, bool with_double, double* rows, Scratch&) const;
+  Plan(int order, int source_order, bool wide);
+  template <class Vector>
+  struct Rows;
+  template <class Vector>
+  struct Columns;
   RawVector<double> rows_of(const Coefficients& x, bool with_double) const;
   LayerMatrices project(const RawVector<double>& rows, bool with_double) const;
   int column_stride() const { return (coefficient_count(p) + lanes - 1) / lanes * lanes; }

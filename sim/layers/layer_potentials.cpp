@@ -14,12 +14,85 @@ using std::numbers::pi;
 
 }  // namespace
 
-/// Projection of all rows on the target harmonics, column block by column block: 48 columns are 12 vectors.
+/// Projection of rows on the target harmonics, a block of columns after the other: 12 vectors, 48 or 96 columns. With
+/// the memory of a thread; of_four and of_eight differ in the instruction set.
+template <class Vector>
+struct LayerPotentials::Plan::Columns {
+  const Plan& plan;
+  BufferOf<Vector> samples, folded, spectrum, out;
+
+  explicit Columns(const Plan& the_plan)
+      : plan(the_plan),
+        samples(8 * components),
+        folded(std::size_t(8) * plan.target.orbits.size() * components),
+        spectrum(std::size_t(2) * plan.target_rows.count * plan.target.half * components),
+        out(std::size_t(coefficient_count(plan.p)) * components) {}
+
+  static int blocks(std::ptrdiff_t row_length) {
+    return int((row_length / width_of<Vector> + components - 1) / components);
+  }
+
+  /// Weighted samples of one orbit of a pair of latitudes; zero where there is none, and beyond the given width.
+  [[gnu::always_inline]] void read(int i, int l, const double* columns, std::ptrdiff_t row_length, int width) {
+    constexpr int ahead = 2;  // rows lie too far apart for the processor to foresee the next
+    const FoldedGrid& target = plan.target;
+    const int orbits = int(target.orbits.size()), members = target.mirror(i) == i ? 1 : 2;
+    for (int lat = 0; lat < 2; ++lat)
+      for (int member = 0; member < 4; ++member) {
+        Vector* sample = samples.get() + (lat * 4 + member) * components;
+        const int j = target.orbits[l].index[member], latitude = lat == 0 ? i : target.mirror(i);
+        const bool present = lat < members && j >= 0;
+        const double* row = columns + std::ptrdiff_t(latitude) * target.nlon * row_length;
+        if (present && l + ahead < orbits)
+          if (const int next = target.orbits[l + ahead].index[member]; next >= 0)
+            for (int c = 0; c < width * width_of<Vector>; c += 8) __builtin_prefetch(row + next * row_length + c);
+        const double weight = target.weight[latitude] * pi / (plan.q + 1);
+        for (int c = 0; c < width && present; ++c) {
+          Vector v;
+          load(row + j * row_length + c * width_of<Vector>, v);
+          sample[c] = weight * v;
+        }
+        for (int c = present ? width : 0; c < components; ++c) sample[c] = Vector{};
+      }
+  }
+
+  [[gnu::always_inline]] void write(int first, int width, LayerMatrices& result) const {
+    const std::ptrdiff_t length = std::ptrdiff_t(6) * plan.column_stride();
+    for (int row = 0; row < coefficient_count(plan.p); ++row)
+      for (int c = 0; c < width; ++c) {
+        const std::ptrdiff_t column = std::ptrdiff_t(first + c) * width_of<Vector>;
+        double* to = column < length ? result.single.values.data() + row * length + column
+                                     : result.dual.values.data() + row * length + column - length;
+        __builtin_memcpy(to, &out.get()[row * components + c], sizeof(Vector));
+      }
+  }
+
+  void of_block(int block, const RawVector<double>& rows, std::ptrdiff_t row_length, LayerMatrices& result) {
+    const FoldedGrid& target = plan.target;
+    const int first = block * components, orbits = int(target.orbits.size());
+    const int width = std::min(components, int(row_length / width_of<Vector>) - first);
+    const int used = (width + 2) / 3 * 3;  // products take three vectors at once
+    for (int i = 0; i < target.half; ++i) {
+      run_apart<Vector>([&]() __attribute__((always_inline)) {
+        for (int l = 0; l < orbits; ++l) {
+          read(i, l, rows.data() + first * width_of<Vector>, row_length, width);
+          fold(samples.get(), folded.get() + l * components, std::ptrdiff_t(orbits) * components, used);
+        }
+      });
+      run_apart<Vector>([&]() __attribute__((always_inline)) {
+        fourier_analysis(target, plan.target_rows, folded.get(), spectrum.get(), i, used);
+      });
+    }
+    run_apart<Vector>([&]() __attribute__((always_inline)) {
+      legendre_analysis(target, plan.target_rows, spectrum.get(), out.get(), used);
+      write(first, width, result);
+    });
+  }
+};
+
 LayerMatrices LayerPotentials::Plan::project(const RawVector<double>& rows, bool with_double) const {
-  const int nc = coefficient_count(p), stride = column_stride(), half = target.half, orbits = int(target.orbits.size());
-  const int used = with_double ? components : components / 2, vectors = used * stride / lanes;
-  const int blocks = (vectors + components - 1) / components;
-  const std::ptrdiff_t row_length = std::ptrdiff_t(used) * stride;
+  const int nc = coefficient_count(p), stride = column_stride();
+  const std::ptrdiff_t row_length = std::ptrdiff_t(with_double ? components : components / 2) * stride;
   LayerMatrices result;
   for (LayerMatrix* m : {&result.single, &result.dual}) {
     if (m == &result.dual && !with_double) continue;
@@ -28,60 +101,20 @@ LayerMatrices LayerPotentials::Plan::project(const RawVector<double>& rows, bool
     m->values.resize(std::size_t(nc) * 6 * stride);
   }
 #pragma omp parallel
-  {
-    LaneBuffer spectrum(std::size_t(2) * target_rows.count * half * components);
-    LaneBuffer folded(std::size_t(8) * orbits * components), out(std::size_t(nc) * components);
-    std::vector<Lane> samples(8 * components);
+  if (wide) {
+    Columns<WideLane> columns(*this);
 #pragma omp for schedule(static)
-    for (int block = 0; block < blocks; ++block) {
-      const int first = block * components, width = std::min(components, vectors - first);
-      const auto row_at = [&](int latitude, int longitude) {
-        return rows.data() + (std::ptrdiff_t(latitude) * target.nlon + longitude) * row_length + first * lanes;
-      };
-      constexpr int ahead = 2;  // rows lie too far apart for the processor to foresee the next
-      for (int i = 0; i < half; ++i) {
-        const int members = target.mirror(i) == i ? 1 : 2;
-        for (int l = 0; l < orbits; ++l) {
-          for (int lat = 0; lat < 2; ++lat)
-            for (int member = 0; member < 4; ++member) {
-              Lane* sample = samples.data() + (lat * 4 + member) * components;
-              const int j = target.orbits[l].index[member];
-              if (lat >= members || j < 0) {
-                std::fill(sample, sample + components, Lane{});
-                continue;
-              }
-              const int lat_index = lat == 0 ? i : target.mirror(i);
-              const double weight = target.weight[lat_index] * pi / (q + 1);
-              const double* in = row_at(lat_index, j);
-              if (l + ahead < orbits)
-                if (const int next = target.orbits[l + ahead].index[member]; next >= 0)
-                  for (int c = 0; c < width; c += 2) __builtin_prefetch(row_at(lat_index, next) + c * lanes);
-              for (int c = 0; c < width; ++c) {
-                Lane v;
-                __builtin_memcpy(&v, in + c * lanes, sizeof v);
-                sample[c] = weight * v;
-              }
-              std::fill(sample + width, sample + components, Lane{});
-            }
-          fold(samples.data(), folded.get() + l * components, std::ptrdiff_t(orbits) * components, components);
-        }
-        fourier_analysis(target, target_rows, folded.get(), spectrum.get(), i, components);
-      }
-      legendre_analysis(target, target_rows, spectrum.get(), out.get(), components);
-      for (int row = 0; row < nc; ++row)
-        for (int c = 0; c < width; ++c) {
-          const int column = (first + c) * lanes;
-          LayerMatrix& m = column < 6 * stride ? result.single : result.dual;
-          double* to =
-              m.values.data() + std::ptrdiff_t(row) * 6 * stride + column - (&m == &result.dual ? 6 * stride : 0);
-          __builtin_memcpy(to, &out.get()[row * components + c], sizeof(Lane));
-        }
-    }
+    for (int block = 0; block < columns.blocks(row_length); ++block) columns.of_block(block, rows, row_length, result);
+  } else {
+    Columns<Lane> columns(*this);
+#pragma omp for schedule(static)
+    for (int block = 0; block < columns.blocks(row_length); ++block) columns.of_block(block, rows, row_length, result);
   }
   return result;
 }
 
-LayerPotentials::LayerPotentials(int order, int source_order) : plan_(std::make_unique<Plan>(order, source_order)) {}
+LayerPotentials::LayerPotentials(int order, int source_order, AssemblyWidth width)
+    : plan_(std::make_unique<Plan>(order, source_order, width == AssemblyWidth::widest)) {}
 LayerPotentials::~LayerPotentials() = default;
 LayerPotentials::LayerPotentials(LayerPotentials&&) noexcept = default;
 int LayerPotentials::order() const { return plan_->p; }

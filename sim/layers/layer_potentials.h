@@ -29,10 +29,14 @@ struct LayerMatrices {
   LayerMatrix dual;    ///< D of (5) without (1 - lambda); assembled only on request
 };
 
+/// How many targets the assembly takes at once: eight where the processor has AVX-512, or always four. The bits are the
+/// same.
+enum class AssemblyWidth { four, widest };
+
 /// Plan: degree p, source grid order s (p + 1 by default, more for accuracy).
 class LayerPotentials {
  public:
-  explicit LayerPotentials(int order, int source_order = 0);
+  explicit LayerPotentials(int order, int source_order = 0, AssemblyWidth = AssemblyWidth::widest);
   ~LayerPotentials();
   LayerPotentials(LayerPotentials&&) noexcept;
   LayerPotentials(const LayerPotentials&) = delete;

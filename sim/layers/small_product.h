@@ -1,5 +1,5 @@
 // C = A B for a small constant matrix A and rows of B that are a few SIMD vectors wide: the one inner loop of
-// operator assembly. Each lane holds one of four targets, so every step of the assembly is such a product and none
+// operator assembly. Each lane holds one of several targets, so every step of the assembly is such a product and none
 // needs a shuffle.
 #pragma once
 
@@ -22,13 +22,15 @@ struct SmallMatrix {
   const double* values;
 };
 
-template <int R, class RowsB, class RowsC>
-inline void product_rows(const SmallMatrix& m, int row, const Lane* b, RowsB b_row, Lane* c, RowsC c_row) {
-  Pack<3> s, t, u, v;
+template <int R, class Vector, class RowsB, class RowsC>
+[[gnu::always_inline]] inline void product_rows(const SmallMatrix& m, int row, const Vector* b, RowsB b_row, Vector* c,
+                                                RowsC c_row) {
+  using Sum = Pack<3, Vector>;
+  Sum s, t, u, v;
   const double* a0 = m.values + std::ptrdiff_t(row) * m.depth;
   const double* a2 = a0 + 2 * std::ptrdiff_t(m.depth);
   for (int k = 0; k < m.depth; ++k) {
-    const Pack<3> x = Pack<3>::load(b + b_row[k]);
+    const Sum x = Sum::load(b + b_row[k]);
     s.add(a0[k], x);
     if constexpr (R > 1) t.add(a0[m.depth + k], x);
     if constexpr (R > 2) u.add(a2[k], x);
@@ -41,10 +43,11 @@ inline void product_rows(const SmallMatrix& m, int row, const Lane* b, RowsB b_r
 }
 
 /// C = A B, each row of B and C being `width` vectors, a multiple of 3.
-template <class RowsB, class RowsC>
-inline void multiply(const SmallMatrix& m, int width, const Lane* b, RowsB b_row, Lane* c, RowsC c_row) {
+template <class Vector, class RowsB, class RowsC>
+[[gnu::always_inline]] inline void multiply(const SmallMatrix& m, int width, const Vector* b, RowsB b_row, Vector* c,
+                                            RowsC c_row) {
   int row = 0;
-  const auto all = [&]<int R>() {
+  const auto all = [&]<int R>() __attribute__((always_inline)) {
     for (int w = 0; w < width; w += 3) product_rows<R>(m, row, b + w, b_row, c + w, c_row);
     row += R;
   };

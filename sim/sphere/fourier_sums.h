@@ -27,19 +27,20 @@ inline void append_fourier_row(std::vector<double>& table, int p, int l, int lon
 }
 
 /// Samples of W vectors at the members f, -f, pi - f and pi + f of an orbit.
-template <int W>
+template <int W, class Vector = Lane>
 struct Mirrored {
-  Pack<W> member[4];
+  Pack<W, Vector> member[4];
 };
 
 /// Fourier sums; `table` is the orbit's row of the Fourier table, cosine and sine rows are counted from m = 0.
-template <int W>
-inline __attribute__((always_inline)) Mirrored<W> fourier_sums(const double* table, int p, int degree, bool mean,
-                                                               const Lane* cosines, const Lane* sines,
+template <int W, class Vector>
+[[gnu::always_inline]] inline Mirrored<W, Vector> fourier_sums(const double* table, int p, int degree, bool mean,
+                                                               const Vector* cosines, const Vector* sines,
                                                                std::ptrdiff_t row) {
-  Pack<W> cos_even, cos_odd, sin_even, sin_odd;
-  const Lane* x = cosines;
-  const Lane* y = sines;
+  using Sum = Pack<W, Vector>;
+  Sum cos_even, cos_odd, sin_even, sin_odd;
+  const Vector* x = cosines;
+  const Vector* y = sines;
   if (mean) cos_even.add(table[0], x);
   int m = 1;
   for (; m < degree; m += 2) {
@@ -54,7 +55,7 @@ inline __attribute__((always_inline)) Mirrored<W> fourier_sums(const double* tab
     cos_odd.add(table[m], x + row);
     sin_odd.add(table[p + m], y + row);
   }
-  const Pack<W> even = cos_even + cos_odd, odd = cos_even - cos_odd, s = sin_even + sin_odd, t = sin_even - sin_odd;
+  const Sum even = cos_even + cos_odd, odd = cos_even - cos_odd, s = sin_even + sin_odd, t = sin_even - sin_odd;
   return {{even + s, even - s, odd - t, odd + t}};
 }
 

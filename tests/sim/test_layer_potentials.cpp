@@ -121,6 +121,18 @@ TEST_CASE("turning the parametrisation does not change S and D as functions of s
   CHECK((b.dual.apply(reparametrised(f)).values - reparametrised(a.dual.apply(f)).values).norm() < 1e-7);
 }
 
+TEST_CASE("assembly gives the same bits four targets at once and as many as the processor can") {
+  for (const int p : {2, 7, 8, 9, 12}) {  // rows of targets that are no multiples of eight, odd and even latitudes
+    const Coefficients x = test::potato(p);
+    for (const bool with_double : {false, true}) {
+      const LayerMatrices four = LayerPotentials(p, 0, AssemblyWidth::four).assemble(x, with_double);
+      const LayerMatrices widest = LayerPotentials(p).assemble(x, with_double);
+      CHECK(four.single.values == widest.single.values);
+      CHECK(four.dual.values == widest.dual.values);
+    }
+  }
+}
+
 TEST_CASE("assembly gives the same bits with one and with two threads, and S does not depend on asking for D") {
   const Coefficients x = test::potato(9);
   const LayerPotentials layers(9);
