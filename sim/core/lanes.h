@@ -32,6 +32,9 @@ inline bool has_wide_lanes() {
 inline bool has_wide_lanes() { return false; }
 #endif
 
+/// How many things a loop takes at once; the bits are the same.
+enum class LaneCount { four, widest };
+
 /// Runs a step in a function of its own, which has the instruction set of its vectors. The step, and what it calls with
 /// vectors, must be inlined into it ([[gnu::always_inline]]), and gives no vectors by value.
 template <class Step>

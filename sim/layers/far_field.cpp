@@ -2,7 +2,6 @@
 
 #include "sim/core/parallel.h"
 #include "sim/layers/kernels.h"
-#include "sim/layers/small_product.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,40 +57,78 @@ void exclude(FarField& far, const std::vector<Exclusion>& exclusions) {
               [](const PartialView& a, const PartialView& b) { return a.surface < b.surface; });
 }
 
-void add_direct_sum(const Sources& s, const SourceDensities& density, const Matrix& points, Matrix& velocity) {
-  const Eigen::Index count = points.rows(), sources = s.points.rows();
-  const bool dual = density.dual.size() > 0;
-  // Weighted densities once; four targets a lane, sources in order: the result does not depend on how targets are
-  // split.
-  Matrix f(3, sources), u, n, y = s.points.transpose();
-  for (int d = 0; d < 3; ++d)
-    f.row(d) = (stokeslet_factor * density.force.col(d).array() * s.area.array()).matrix().transpose();
-  if (dual) {
+namespace {
+
+/// Weighted densities, once: S f + D u without the factors of the kernels.
+struct Strengths {
+  Matrix y, f, u, n;  ///< [3][source]; u and n are empty without a double layer
+
+  Strengths(const Sources& s, const SourceDensities& density) : y(s.points.transpose()), f(3, s.points.rows()) {
+    for (int d = 0; d < 3; ++d)
+      f.row(d) = (stokeslet_factor * density.force.col(d).array() * s.area.array()).matrix().transpose();
+    if (density.dual.size() == 0) return;
     u = density.dual.transpose();
     n = s.normals.transpose() * stresslet_factor;
   }
-  for (Eigen::Index first = 0; first < count; first += lanes) {
-    Lane t[3], v[3] = {};
-    for (int d = 0; d < 3; ++d) {
-      double x[lanes];
-      for (int lane = 0; lane < lanes; ++lane) x[lane] = points(std::min(first + lane, count - 1), d);
-      __builtin_memcpy(&t[d], x, sizeof x);
+};
+
+/// Sums at as many targets as there are lanes, of which the last may be the same.
+template <class Vector>
+[[gnu::always_inline]] inline void sum_at(const Strengths& s, const Vector* t, Vector* v) {
+  const bool dual = s.u.size() > 0;
+  const double *y = s.y.data(), *f = s.f.data(), *u = s.u.data(), *n = s.n.data();
+  Vector v0{}, v1{}, v2{};
+  for (Eigen::Index at = 0; at < s.y.size(); at += 3) {
+    const Vector r0 = t[0] - y[at], r1 = t[1] - y[at + 1], r2 = t[2] - y[at + 2];
+    Vector distance = r0 * r0 + r1 * r1 + r2 * r2;
+    take_root(distance);
+    const Vector inverse = 1.0 / distance;
+    const KernelTensor<Vector> g = stokeslet(inverse, 1.0);
+    Vector along = g.outer * (r0 * f[at] + r1 * f[at + 1] + r2 * f[at + 2]);
+    if (dual) {
+      const Vector rn = r0 * n[at] + r1 * n[at + 1] + r2 * n[at + 2], ru = r0 * u[at] + r1 * u[at + 1] + r2 * u[at + 2];
+      Vector outer;
+      stresslet(inverse, rn, outer);
+      along += outer * ru;
     }
-    for (Eigen::Index k = 0; k < sources; ++k) {
-      const Lane r0 = t[0] - y(0, k), r1 = t[1] - y(1, k), r2 = t[2] - y(2, k);
-      const Lane rr = r0 * r0 + r1 * r1 + r2 * r2, inverse = 1.0 / lane_sqrt(rr);
-      const KernelTensor<Lane> g = stokeslet(inverse, 1.0);
-      Lane along = g.outer * (r0 * f(0, k) + r1 * f(1, k) + r2 * f(2, k));
-      if (dual) {
-        const Lane rn = r0 * n(0, k) + r1 * n(1, k) + r2 * n(2, k), ru = r0 * u(0, k) + r1 * u(1, k) + r2 * u(2, k);
-        along += stresslet(inverse, rn) * ru;
-      }
-      v[0] += f(0, k) * g.even + along * r0;
-      v[1] += f(1, k) * g.even + along * r1;
-      v[2] += f(2, k) * g.even + along * r2;
+    v0 += f[at] * g.even + along * r0;
+    v1 += f[at + 1] * g.even + along * r1;
+    v2 += f[at + 2] * g.even + along * r2;
+  }
+  v[0] = v0;
+  v[1] = v1;
+  v[2] = v2;
+}
+
+template <class Vector>
+void add_at(const Strengths& s, const Matrix& points, Eigen::Index first, Matrix& velocity) {
+  constexpr int width = width_of<Vector>;
+  Vector t[3], v[3];
+  for (int d = 0; d < 3; ++d) {
+    double x[width];
+    for (int lane = 0; lane < width; ++lane) x[lane] = points(std::min(first + lane, points.rows() - 1), d);
+    __builtin_memcpy(&t[d], x, sizeof x);
+  }
+  run_apart<Vector>([&]() __attribute__((always_inline)) { sum_at(s, t, v); });
+  for (int lane = 0; lane < width && first + lane < points.rows(); ++lane)
+    for (int d = 0; d < 3; ++d) velocity(first + lane, d) += v[d][lane];
+}
+
+}  // namespace
+
+void add_direct_sum(const Sources& s, const SourceDensities& density, const Matrix& points, Matrix& velocity,
+                    LaneCount most) {
+  const Strengths strengths(s, density);
+  // A target a lane, sources in order: the result does not depend on how targets are split.
+  const bool wide = most == LaneCount::widest && has_wide_lanes();
+  for (Eigen::Index first = 0, count = points.rows(); first < count;) {
+    if (wide && count - first > lanes) {
+      add_at<WideLane>(strengths, points, first, velocity);
+      first += width_of<WideLane>;
+    } else {
+      add_at<Lane>(strengths, points, first, velocity);
+      first += lanes;
     }
-    for (int lane = 0; lane < lanes && first + lane < count; ++lane)
-      for (int d = 0; d < 3; ++d) velocity(first + lane, d) += v[d][lane];
   }
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "sim/core/cells.h"
+#include "sim/core/lanes.h"
 #include "sim/fast/patches.h"
 #include "sim/sphere/basis.h"
 
@@ -56,6 +57,7 @@ void exclude(FarField&, const std::vector<Exclusion>&);
 std::vector<Matrix> far_velocity(const FarField&, std::span<const SourceDensities>);
 
 /// The smooth rule of one surface at points (count x 3), added to `velocity`.
-void add_direct_sum(const Sources&, const SourceDensities&, const Matrix& points, Matrix& velocity);
+void add_direct_sum(const Sources&, const SourceDensities&, const Matrix& points, Matrix& velocity,
+                    LaneCount = LaneCount::widest);
 
 }  // namespace sim

@@ -113,8 +113,8 @@ LayerMatrices LayerPotentials::Plan::project(const RawVector<double>& rows, bool
   return result;
 }
 
-LayerPotentials::LayerPotentials(int order, int source_order, AssemblyWidth width)
-    : plan_(std::make_unique<Plan>(order, source_order, width == AssemblyWidth::widest)) {}
+LayerPotentials::LayerPotentials(int order, int source_order, LaneCount width)
+    : plan_(std::make_unique<Plan>(order, source_order, width == LaneCount::widest)) {}
 LayerPotentials::~LayerPotentials() = default;
 LayerPotentials::LayerPotentials(LayerPotentials&&) noexcept = default;
 int LayerPotentials::order() const { return plan_->p; }

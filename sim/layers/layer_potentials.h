@@ -9,6 +9,7 @@
 // factor (1 - lambda).
 #pragma once
 
+#include "sim/core/lanes.h"
 #include "sim/core/raw_memory.h"
 #include "sim/sphere/basis.h"
 
@@ -29,14 +30,10 @@ struct LayerMatrices {
   LayerMatrix dual;    ///< D of (5) without (1 - lambda); assembled only on request
 };
 
-/// How many targets the assembly takes at once: eight where the processor has AVX-512, or always four. The bits are the
-/// same.
-enum class AssemblyWidth { four, widest };
-
 /// Plan: degree p, source grid order s (p + 1 by default, more for accuracy).
 class LayerPotentials {
  public:
-  explicit LayerPotentials(int order, int source_order = 0, AssemblyWidth = AssemblyWidth::widest);
+  explicit LayerPotentials(int order, int source_order = 0, LaneCount = LaneCount::widest);
   ~LayerPotentials();
   LayerPotentials(LayerPotentials&&) noexcept;
   LayerPotentials(const LayerPotentials&) = delete;

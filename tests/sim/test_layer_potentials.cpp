@@ -125,7 +125,7 @@ TEST_CASE("assembly gives the same bits four targets at once and as many as the 
   for (const int p : {2, 7, 8, 9, 12}) {  // rows of targets that are no multiples of eight, odd and even latitudes
     const Coefficients x = test::potato(p);
     for (const bool with_double : {false, true}) {
-      const LayerMatrices four = LayerPotentials(p, 0, AssemblyWidth::four).assemble(x, with_double);
+      const LayerMatrices four = LayerPotentials(p, 0, LaneCount::four).assemble(x, with_double);
       const LayerMatrices widest = LayerPotentials(p).assemble(x, with_double);
       CHECK(four.single.values == widest.single.values);
       CHECK(four.dual.values == widest.dual.values);

@@ -101,6 +101,21 @@ TEST_CASE("a constant density makes the double layer of a closed surface -1 insi
   CHECK(u.row(1).norm() < 1e-9);
 }
 
+TEST_CASE("a direct sum gives the same bits four targets at once and as many as the processor can") {
+  const int order = 4;
+  const Basis basis(order, order + 1);
+  const Sources s = make_sources(basis, test::potato(order));
+  const Matrix force = basis.synthesize(test::smooth_field(order, 3, 3, 1)).values;
+  for (const Matrix& dual : {Matrix(), Matrix(basis.synthesize(test::smooth_field(order, 3, 3, 2)).values)})
+    for (const int count : {1, 4, 5, 8, 12, 15}) {  // whole and partial vectors of both widths
+      const Matrix points = 3 * s.points.topRows(count);
+      Matrix four = Matrix::Ones(count, 3), widest = four;
+      add_direct_sum(s, {force, dual}, points, four, LaneCount::four);
+      add_direct_sum(s, {force, dual}, points, widest);
+      CHECK(four == widest);
+    }
+}
+
 TEST_CASE("a plan is made once, whoever asks at the same time, and forgotten when nobody has asked for long") {
   Plans plans;
   std::vector<const Basis*> seen(8);
