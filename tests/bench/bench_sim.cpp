@@ -19,14 +19,14 @@ constexpr auto unit = benchmark::kMillisecond;
 
 VesicleParameters prolate(int order, double contrast) { return test::vesicle("prolate", 0.85, order, contrast); }
 
-/// S alone, or S and D.
-void assembly(benchmark::State& state, bool with_double) {
+/// S alone, or S and D, four targets at once or as many as the processor can.
+void assembly(benchmark::State& state, bool with_double, LaneCount most) {
   omp_set_num_threads(1);
   const int p = int(state.range(0));
-  const LayerPotentials layers(p);
+  const LayerPotentials layers(p, 0, most);
   const Coefficients x = initial_position(prolate(p, 1));
   for (auto _ : state) benchmark::DoNotOptimize(layers.assemble(x, with_double));
-  bench::against_ceiling(state, bench::assembly_operations(p, with_double));
+  bench::against_ceiling(state, bench::assembly_operations(p, with_double), 0, most);
 }
 
 /// One product with S: 3 fields; its six blocks are read.
@@ -94,6 +94,7 @@ void fourier_fftw(benchmark::State& state) {
 void ceiling(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(bench::arithmetic_ceiling());
   state.counters["GFLOPS"] = bench::arithmetic_ceiling() / 1e9;
+  state.counters["widest"] = bench::arithmetic_ceiling(LaneCount::widest) / 1e9;
   for (const int size : {100, 400})
     state.counters[fmt::format("product_{}_GFLOPS", size)] = bench::product_rate(size) / 1e9;
   for (const auto& [name, kB] :
@@ -147,7 +148,7 @@ void evaluation(benchmark::State& state) {
 }
 
 /// The kernel alone, single and double layer: sources and targets of one vesicle at p = 8, all in the first cache.
-void direct_sum(benchmark::State& state) {
+void direct_sum(benchmark::State& state, LaneCount most) {
   const Eigen::Index count = 200;
   Sources s;
   s.points = Matrix::Random(count, 3);
@@ -157,8 +158,8 @@ void direct_sum(benchmark::State& state) {
   if (state.range(0)) densities.dual = Matrix::Random(count, 3);
   const Matrix targets = (Matrix::Random(count, 3).array() + 5).matrix();
   Matrix velocity = Matrix::Zero(count, 3);
-  for (auto _ : state) add_direct_sum(s, densities, targets, velocity);
-  bench::against_ceiling(state, bench::pair_operations(state.range(0) != 0) * double(count * count));
+  for (auto _ : state) add_direct_sum(s, densities, targets, velocity, most);
+  bench::against_ceiling(state, bench::pair_operations(state.range(0) != 0) * double(count * count), 0, most);
   state.counters["pairs"] = benchmark::Counter(double(count * count), benchmark::Counter::kIsIterationInvariantRate);
 }
 
@@ -223,8 +224,10 @@ void suspension_step(benchmark::State& state, const char* method) {
 
 #define ORDERS DenseRange(8, 16, 4)->Arg(24)->Unit(unit)
 BENCHMARK(ceiling)->Iterations(1);
-BENCHMARK_CAPTURE(assembly, S, false)->ORDERS;
-BENCHMARK_CAPTURE(assembly, S_and_D, true)->ORDERS;
+BENCHMARK_CAPTURE(assembly, S, false, LaneCount::widest)->ORDERS;
+BENCHMARK_CAPTURE(assembly, S_and_D, true, LaneCount::widest)->ORDERS;
+BENCHMARK_CAPTURE(assembly, S_four_lanes, false, LaneCount::four)->ORDERS;
+BENCHMARK_CAPTURE(assembly, S_and_D_four_lanes, true, LaneCount::four)->ORDERS;
 BENCHMARK(apply)->ORDERS;
 BENCHMARK(synthesis)->ORDERS;
 BENCHMARK(analysis)->ORDERS;
@@ -237,7 +240,8 @@ BENCHMARK_CAPTURE(step, contrast_1, 1.0, "off")->HUNDRED_STEPS;
 BENCHMARK_CAPTURE(step, contrast_10, 10.0, "off")->HUNDRED_STEPS;
 BENCHMARK_CAPTURE(step, contrast_1_with_reparametrization, 1.0, "auto")->HUNDRED_STEPS;
 BENCHMARK_CAPTURE(step, contrast_10_with_reparametrization, 10.0, "auto")->HUNDRED_STEPS;
-BENCHMARK(direct_sum)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(direct_sum, widest, LaneCount::widest)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(direct_sum, four_lanes, LaneCount::four)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 #define MANY Arg(8)->Arg(64)->Arg(256)->Iterations(1)->UseRealTime()->MeasureProcessCPUTime()->Unit(unit)
 BENCHMARK_CAPTURE(suspension_product, direct, "direct")->MANY;
 BENCHMARK_CAPTURE(suspension_product, fast, "fast")->Arg(1000)->MANY;

@@ -29,24 +29,29 @@ double least_time(F&& f) {
 }
 
 /// Operations a second of one core on vectors that stay in registers.
-inline double arithmetic_ceiling() {
-  static const double ceiling = [] {
-    constexpr int chains = 12, turns = 400000;  // two units, four or five cycles of latency
-    Lane x[chains];
-    for (int c = 0; c < chains; ++c) x[c] = Lane{} + (1 + c);
-    Lane factor = Lane{} + 0.999, term = Lane{} + 1e-3;
-    const double time = least_time([&] {
+template <class Vector>
+double measured_arithmetic() {
+  constexpr int chains = 12, turns = 400000;  // two units, four or five cycles of latency
+  Vector x[chains];
+  for (int c = 0; c < chains; ++c) x[c] = Vector{} + (1.0 + c);
+  Vector factor = Vector{} + 0.999, term = Vector{} + 1e-3;
+  const double time = least_time([&] {
+    run_apart<Vector>([&]() __attribute__((always_inline)) {
       benchmark::DoNotOptimize(factor);
-      Lane y[chains];
-      std::copy(x, x + chains, y);
+      Vector y[chains];
+      for (int c = 0; c < chains; ++c) y[c] = x[c];
       for (int k = 0; k < turns; ++k)
-        for (Lane& v : y) v = v * factor + term;
-      std::copy(y, y + chains, x);
+        for (Vector& v : y) v = v * factor + term;
+      for (int c = 0; c < chains; ++c) x[c] = y[c];
       benchmark::DoNotOptimize(x);
     });
-    return 2.0 * lanes * chains * turns / time;
-  }();
-  return ceiling;
+  });
+  return 2.0 * width_of<Vector> * chains * turns / time;
+}
+inline double arithmetic_ceiling(LaneCount most = LaneCount::four) {
+  static const double four = measured_arithmetic<Lane>();
+  static const double widest = has_wide_lanes() ? measured_arithmetic<WideLane>() : four;
+  return most == LaneCount::widest ? widest : four;
 }
 
 /// The same in a product of two square matrices of this size by Eigen: what well-kept code gets of it.
@@ -81,9 +86,10 @@ inline double reading_ceiling(std::size_t bytes) {
 }
 
 /// Counters of a kernel with so many operations, which has to read so many bytes besides: its rate, and its share of
-/// what the slower of the two ceilings allows.
-inline void against_ceiling(benchmark::State& state, double operations, double bytes = 0) {
-  double least = operations / arithmetic_ceiling();
+/// what the slower of the two ceilings allows with vectors of that many lanes.
+inline void against_ceiling(benchmark::State& state, double operations, double bytes = 0,
+                            LaneCount most = LaneCount::four) {
+  double least = operations / arithmetic_ceiling(most);
   if (bytes > 0) least = std::max(least, bytes / reading_ceiling(std::size_t(bytes)));
   constexpr auto rate = benchmark::Counter::kIsIterationInvariantRate;
   state.counters["GFLOPS"] = benchmark::Counter(operations / 1e9, rate);
