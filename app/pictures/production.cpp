@@ -189,8 +189,7 @@ void complete(ViewPanel& p, const SourceMeasures& m) {
   const PictureSource& source = p.source;
   render::check_framing(p.framing, m.summaries);
   frame_inset(p, m.summaries);
-  const std::vector<std::int64_t> looked = instants_to_look_at(source.trajectory);
-  p.arrow_net = arrow_net_of(p, {looked.front(), looked[looked.size() / 2], looked.back()});
+  p.arrow_net = arrow_net_of(p, m.summaries);
   for (const render::StateSummary& summary : m.summaries) {
     const render::FlowArrows arrows = arrows_of(p, summary);
     if (arrows.velocities.rows() > 0)
