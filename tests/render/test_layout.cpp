@@ -194,6 +194,31 @@ TEST_CASE("in no figure a text crosses a text, a curve or the edge of the page")
       }
 }
 
+TEST_CASE("the bar of a sheet has the dots of negative values where its pictures have them, and nothing else changes") {
+  for (const render::FigureRow& row : render::figures()) {
+    if (row.needs != render::FigureNeeds::stills) continue;
+    render::FigureInput in = input_of(row, "85", 2);
+    const render::Image without = without_text(row.draw(in).drawing);
+    in.field->mirrored = true;
+    const render::Image with = without_text(row.draw(in).drawing);
+    REQUIRE(with.width == without.width);
+    int changed = 0, top = with.height, bottom = 0, right = 0;
+    for (int y = 0; y < with.height; ++y)
+      for (int x = 0; x < with.width; ++x)
+        if (std::abs(with.at(x, y)[1] - without.at(x, y)[1]) > 8) {
+          ++changed;
+          top = std::min(top, y);
+          bottom = std::max(bottom, y);
+          right = std::max(right, x);
+        }
+    INFO(row.name);
+    CHECK(changed > 30);
+    CHECK(bottom - top < 9);  // two rows in a bar of 0.8 x 9 pt
+    // the upper half of the bar, at the right edge of the page, has none
+    CHECK(right < 0.8 * with.width);
+  }
+}
+
 TEST_CASE("in no serif figure on a tiny page a text crosses another") {
   for (const render::FigureRow& row : render::figures()) {
     if (row.needs != render::FigureNeeds::series && row.needs != render::FigureNeeds::plots) continue;
