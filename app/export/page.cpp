@@ -76,7 +76,13 @@ struct VesicleSeries {
 class Recorder {
  public:
   Recorder(const ViewPanel& panel, const sim::TrajectoryReader& trajectory)
-      : panel_(panel), arrows_(1e-4), targets_(1e-4), profile_(1e-3), radius_(panel.captions.scale_length) {
+      : panel_(panel),
+        arrows_(1e-4),
+        targets_(1e-4),
+        profile_(1e-3),
+        through_(1e-4),
+        inset_(1e-4),
+        radius_(panel.captions.scale_length) {
     const sim::State first = trajectory.state(0);
     int order = 1, label_order = 1;
     for (std::int64_t k = 0; k < trajectory.count(); k += std::max<std::int64_t>(1, trajectory.count() / 20))
@@ -123,6 +129,11 @@ class Recorder {
     if (panel_.view.flow_profile) add_profile(camera, state.time);
     const sim::Vec3 target = render::to_sim(camera.target) / radius_;
     if (settings.scene.cell.size) targets_.add({target.data(), 3});
+    if (panel_.view.cut == "common") add_vector(through_, render::to_sim(summary.centroid) / radius_ - target);
+    if (panel_.view.inset) {
+      const glm::dvec2 centre = inset_centre(panel_, panel_.framing.moment(summary).centre);
+      add_vector(inset_, sim::Vec3(centre.x, 0, centre.y) / radius_ - sim::Vec3(target[0], 0, target[2]));
+    }
     times_.push_back(panel_.stamped ? marked(captions_of(panel_, state.time).time) : "");
     ++frames_;
   }
@@ -144,6 +155,7 @@ class Recorder {
       m.vector("contour", render::vector_of(render::outline_colour(own, ground, false)));
       const render::Colour core{0.5 + 0.5 * own.r, 0.5 + 0.5 * own.g, 0.5 + 0.5 * own.b};
       m.vector("cut_edge", render::vector_of(core));
+      m.text("section", fmt::format("rgb({:.0f} {:.0f} {:.0f})", 255 * own.r, 255 * own.g, 255 * own.b));
       m.vector("ghost_contour", render::vector_of(render::outline_colour(own, ground, true)));
       m.number("radius", radii_[v]);
       m.raw("breaks", fmt::format("[{}]", fmt::join(s.breaks, ",")));
@@ -161,6 +173,8 @@ class Recorder {
     page.raw("arrows", series(arrows_));
     page.raw("targets", series(targets_));
     page.raw("profile", series(profile_));
+    page.raw("through", series(through_));
+    page.raw("inset_centre", series(inset_));
     page.raw("arrow_counts", fmt::format("[{}]", fmt::join(arrow_counts_, ",")));
     page.text("bytes", base64(deflated(bytes)));
   }
@@ -170,6 +184,8 @@ class Recorder {
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = values;
     series.add({rows.data(), static_cast<std::size_t>(rows.size())});
   }
+
+  static void add_vector(PageSeries& series, const sim::Vec3& v) { series.add({v.data(), 3}); }
 
   void add_field(PageSeries& series, const Settings& settings, const sim::State& state, std::size_t vesicle,
                  sim::Surroundings& surroundings) {
@@ -213,6 +229,8 @@ class Recorder {
   std::vector<VesicleSeries> all_;
   std::vector<double> radii_;
   PageSeries arrows_, targets_, profile_;
+  PageSeries through_;  ///< what the common plane of cuts goes through, but for its offset
+  PageSeries inset_;    ///< middle of the inset
   std::vector<std::size_t> arrow_counts_;
   std::vector<std::string> times_;
   bool rests_ = false;  ///< there is no background flow
@@ -341,6 +359,15 @@ void write_cut(Members& page, const ViewPanel& panel) {
   page.raw("cut", cut.whole());
 }
 
+void write_inset(Members& page, const ViewPanel& panel) {
+  if (!panel.view.inset) return page.raw("inset", "null");
+  Members inset;
+  inset.number("half_height", inset_half_height(panel) / panel.captions.scale_length);
+  inset.number("height", render::inset_height);
+  inset.number("aspect", render::inset_aspect);
+  page.raw("inset", inset.whole());
+}
+
 void write_legend(Members& page, const ViewPanel& panel) {
   if (!panel.painting.field) return page.raw("legend", "null");
   const std::optional<render::Legend>& legend = panel.painting.legend;
@@ -412,6 +439,7 @@ std::string page_text(const sim::TrajectoryReader& trajectory, const Settings& s
   write_paint(page, panel.view, cue);
   write_styles(page, panel, tracers);
   write_cut(page, panel);
+  write_inset(page, panel);
   write_legend(page, panel);
   write_shaders(page, cue > 0);
   recorder.write(page);

@@ -66,6 +66,7 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
       draw_stills(studio, {source.trajectory, settings}, source.legend, ground_of_stills(input.parameters), stills);
   input.stills = std::move(drawn.images);
   input.field = std::move(drawn.legend);
+  if (input.field) input.field->mirrored = input.field->mirrored && settings.view.sign_dots;
 }
 
 /// The first vesicle of each in the course of its motion, seen as the sections cut it.

@@ -76,6 +76,7 @@ std::vector<render::Plot> phase_plots(const std::vector<FigureSource>& sources, 
     render::Curve curve;
     curve.name = source.name;
     curve.colour = plot.curves.size();
+    curve.directed = true;
     if (sources.size() > 1) {
       curve.marker = render::group_marker(curve.colour);
       curve.phase = (static_cast<double>(curve.colour) + 0.5) / static_cast<double>(sources.size());
@@ -106,7 +107,9 @@ std::vector<render::Plot> spectra_plots(const render::FigureInput& input) {
   position.y = {.label = "E_{n} of the position", .scale = render::Scale::logarithmic, .grid = true};
   render::Plot curvature = position;
   curvature.y.label = "E_{n} of the mean curvature";
-  const double first = input.states.front().time, span = std::max(input.states.back().time - first, 1e-300);
+  // By their number: instants that crowd at the start could not be told apart by their time.
+  const auto last = static_cast<double>(std::max<std::size_t>(input.states.size() - 1, 1));
+  constexpr std::size_t few = 4;
   constexpr double nothing = 1e-11;  // degrees that a symmetry empties
   for (const sim::State& state : input.states) {
     const sim::VesicleState& v = state.vesicles.front();
@@ -114,7 +117,8 @@ std::vector<render::Plot> spectra_plots(const render::FigureInput& input) {
     const sim::Coefficients h = sim::mean_curvature(plans, sim::resized(v.position, q), q);
     render::Curve x, k;
     x.name = render::time_text(input, input.time_factor * state.time);
-    x.instant = (state.time - first) / span;
+    x.instant = static_cast<double>(position.curves.size()) / last;
+    x.fine = input.states.size() > few;
     x.marker = render::Marker::dot;
     k = x;
     k.marker.reset();

@@ -12,7 +12,6 @@
 #include "sim/membrane/flows.h"
 
 #include <algorithm>
-#include <array>
 
 namespace app {
 
@@ -91,44 +90,68 @@ render::FlowArrows arrows_of(const ViewPanel& p, const render::StateSummary& sum
   return arrows;
 }
 
-int arrow_net_of(const ViewPanel& p, const std::vector<std::int64_t>& instants) {
+namespace {
+
+/// What vesicles and copies cover, by the few points that are known of them.
+std::vector<render::Shadow> shadows_of(const sim::Scene& scene, const render::ViewParameters& view,
+                                       const render::StateSummary& summary, const render::Camera& camera) {
+  // Half the distance of these points on a sphere, which are 18 degrees apart, as a share of its radius.
+  constexpr double between = 0.16;
+  const std::size_t each = summary.points_of_each();
+  std::vector<sim::Vec3> middles;
+  for (const glm::dvec3& centroid : summary.centroids) middles.push_back(render::to_sim(centroid));
+  std::vector<render::Shadow> shadows;
+  for (const Shown& shown : shown_of(scene, view, middles, summary.time)) {
+    std::vector<glm::dvec3> points;
+    for (std::size_t k = 0; k < each; ++k)
+      points.push_back(summary.point(shown.vesicle * each + k) + render::to_glm(shown.shift));
+    shadows.push_back(render::shadow_of(camera, points));
+    shadows.back().reach = between * shadows.back().radius;
+  }
+  return shadows;
+}
+
+/// How many arrows are seen at one instant.
+double clear_arrows(const ViewPanel& p, const render::StateSummary& summary, const std::vector<render::Shadow>& shadows,
+                    const render::Camera& camera) {
+  const render::FlowArrows arrows = arrows_of(p, summary);
+  const double fastest = arrows.points.rows() > 0 ? arrows.velocities.rowwise().norm().maxCoeff() : 0;
+  double clear = 0;
+  for (Eigen::Index k = 0; fastest > 0 && k < arrows.points.rows(); ++k) {
+    const glm::dvec3 share = render::to_glm(arrows.velocities.row(k)) / fastest;
+    if (glm::length(share) < render::weakest_arrow) continue;
+    const glm::dvec3 middle = render::to_glm(arrows.points.row(k));
+    const glm::dvec3 half = share * render::longest_arrow * camera.half_height / 2.0;
+    const glm::dvec2 aspect(camera.half_width / camera.half_height, 1);
+    const double shown = render::clear_of_bodies(shadows, aspect * camera.picture_place(middle - half),
+                                                 aspect * camera.picture_place(middle + half));
+    if (shown > 0.8) ++clear;
+  }
+  return clear;
+}
+
+}  // namespace
+
+int arrow_net_of(const ViewPanel& p, const std::vector<render::StateSummary>& summaries) {
   constexpr double enough = 8;  // arrows, on the mean
-  std::array<double, render::finest_arrow_net> clear{};
-  for (const std::int64_t instant : instants) {
-    const sim::Scene& scene = p.source.settings.scene;
-    const sim::State state = boxed(scene, p.source.trajectory.state(instant));
-    const render::StateSummary summary = render::summarize(state);
-    const render::Camera camera = render::make_camera(p.framing, p.framing.moment(summary));
-    std::vector<render::Sketch> sketches;
-    for (const sim::VesicleState& vesicle : state.vesicles) sketches.push_back(render::sketch_of(vesicle));
-    std::vector<render::Shadow> shadows;
-    for (const Shown& shown : shown_of(scene, p.view, state)) {
-      std::vector<glm::dvec3> points = sketches[shown.vesicle].points;
-      for (glm::dvec3& point : points) point += render::to_glm(shown.shift);
-      shadows.push_back(render::shadow_of(camera, points));
-    }
+  const sim::Scene& scene = p.source.settings.scene;
+  int best = 1;
+  double most = 0;
+  for (int net = 1; net <= render::finest_arrow_net && most < enough; ++net) {  // mostly the first one does
     ViewPanel finer = p;
-    for (std::size_t net = 0; net < clear.size(); ++net) {
-      finer.arrow_net = static_cast<int>(net) + 1;
-      const render::FlowArrows arrows = arrows_of(finer, summary);
-      const double fastest = arrows.points.rows() > 0 ? arrows.velocities.rowwise().norm().maxCoeff() : 0;
-      if (fastest <= 0) return 1;  // beads
-      for (Eigen::Index k = 0; k < arrows.points.rows(); ++k) {
-        const glm::dvec3 share = render::to_glm(arrows.velocities.row(k)) / fastest;
-        if (glm::length(share) < render::weakest_arrow) continue;
-        const glm::dvec3 middle = render::to_glm(arrows.points.row(k));
-        const glm::dvec3 half = share * render::longest_arrow * camera.half_height / 2.0;
-        const glm::dvec2 aspect(camera.half_width / camera.half_height, 1);
-        const double shown = render::clear_of_bodies(shadows, aspect * camera.picture_place(middle - half),
-                                                     aspect * camera.picture_place(middle + half));
-        if (shown > 0.8) clear[net] += 1.0 / static_cast<double>(instants.size());
-      }
+    finer.arrow_net = net;
+    double clear = 0;
+    for (const render::StateSummary& summary : summaries) {
+      const render::Camera camera = render::make_camera(p.framing, p.framing.moment(summary));
+      clear += clear_arrows(finer, summary, shadows_of(scene, p.view, summary, camera), camera) /
+               static_cast<double>(summaries.size());
+    }
+    if (clear > most) {
+      best = net;
+      most = clear;
     }
   }
-  std::size_t best = 0;
-  for (std::size_t net = 1; net < clear.size(); ++net)
-    if (clear[best] < enough && clear[net] > clear[best]) best = net;
-  return static_cast<int>(best) + 1;
+  return best;
 }
 
 render::FlowLines flow_lines_of(sim::Plans& plans, const ViewPanel& p, const sim::State& state,

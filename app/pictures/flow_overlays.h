@@ -12,8 +12,8 @@ namespace app {
 render::FlowArrows arrows_of(const ViewPanel&, const render::StateSummary&);
 
 /// The coarsest net of which enough arrows stand clear of vesicles and copies, or the one with most of them: one for
-/// the whole movie. instants: of the trajectory.
-int arrow_net_of(const ViewPanel&, const std::vector<std::int64_t>& instants);
+/// the whole movie, from the mean over its states.
+int arrow_net_of(const ViewPanel&, const std::vector<render::StateSummary>&);
 
 /// Streamlines of the whole flow in the plane of the arrows, as far as the picture reaches; none under what lies
 /// over it, in these boxes, and none at all where the view shows none. Throws Interrupted at the first signal.

@@ -57,16 +57,23 @@ sim::State boxed(const sim::Scene& scene, sim::State state) {
 }
 
 std::vector<Shown> shown_of(const sim::Scene& scene, const render::ViewParameters& view, const sim::State& state) {
+  std::vector<sim::Vec3> middles;
+  for (const sim::VesicleState& vesicle : state.vesicles) middles.push_back(middle_of(vesicle));
+  return shown_of(scene, view, middles, state.time);
+}
+
+std::vector<Shown> shown_of(const sim::Scene& scene, const render::ViewParameters& view,
+                            const std::vector<sim::Vec3>& middles, double time) {
   std::vector<Shown> all;
-  for (std::size_t v = 0; v < state.vesicles.size(); ++v) all.push_back({v, sim::Vec3::Zero()});
-  const sim::CellSides sides = sim::cell_at(scene, state.time);
+  for (std::size_t v = 0; v < middles.size(); ++v) all.push_back({v, sim::Vec3::Zero()});
+  const sim::CellSides sides = sim::cell_at(scene, time);
   if (!sides) return all;
   const std::vector<int>& most = view.copies;
   for (int c = -most[2]; c <= most[2]; ++c)
-    for (std::size_t v = 0; v < state.vesicles.size(); ++v) {
+    for (std::size_t v = 0; v < middles.size(); ++v) {
       // A layer above leans to one side; what leaves the box there comes back on the other.
       const double length = (*sides)(0, 0), lean = c * (*sides)(0, 2);
-      const double back = c == 0 ? 0 : -std::floor((middle_of(state.vesicles[v])[0] + lean) / length + 0.5);
+      const double back = c == 0 ? 0 : -std::floor((middles[v][0] + lean) / length + 0.5);
       for (int b = -most[1]; b <= most[1]; ++b)
         for (int a = -most[0]; a <= most[0]; ++a)
           if (a != 0 || b != 0 || c != 0) all.push_back({v, *sides * sim::Vec3(a + back, b, c)});

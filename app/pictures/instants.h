@@ -27,6 +27,9 @@ struct Shown {
 /// What a picture shows of such a state: all vesicles, and of view.copies those images whose centres are in the box
 /// that is larger by so many cells on each side.
 std::vector<Shown> shown_of(const sim::Scene&, const render::ViewParameters&, const sim::State&);
+/// The same of vesicles whose middles are known.
+std::vector<Shown> shown_of(const sim::Scene&, const render::ViewParameters&, const std::vector<sim::Vec3>& middles,
+                            double time);
 sim::VesicleState moved(sim::VesicleState, const sim::Vec3& shift);
 /// Edges of the box; none without a cell.
 std::vector<render::FlowLines::Line> edges_of_cell(const sim::Scene&);

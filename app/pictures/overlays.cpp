@@ -43,14 +43,19 @@ void frame_inset(ViewPanel& p, const std::vector<render::StateSummary>& summarie
   p.inset_half = room * (high - low) / 2.0;
 }
 
+glm::dvec2 inset_centre(const ViewPanel& p, const glm::dvec3& centre) {
+  return p.framing.follows ? p.inset_centre + glm::dvec2(centre.x, centre.z) : p.inset_centre;
+}
+
+double inset_half_height(const ViewPanel& p) { return std::max(p.inset_half.y, p.inset_half.x / render::inset_aspect); }
+
 render::Inset inset_of(const ViewPanel& p, const sim::State& state, const render::Camera& camera,
                        const glm::dvec3& centre) {
   render::Inset inset;
   render::CutPlane plane;
   plane.origin = sim::Vec3(0, camera.target.y, 0);
-  inset.centre = p.inset_centre;
-  if (p.framing.follows) inset.centre += glm::dvec2(centre.x, centre.z);
-  inset.half_height = std::max(p.inset_half.y, p.inset_half.x / render::inset_aspect);
+  inset.centre = inset_centre(p, centre);
+  inset.half_height = inset_half_height(p);
   for (std::size_t v = 0; v < state.vesicles.size(); ++v)
     for (const render::ClosedCurve& curve : render::cut(state.vesicles[v].position, plane)) {
       render::Inset::Curve& drawn = inset.curves.emplace_back();

@@ -184,13 +184,26 @@ void share_arrows(std::vector<ViewPanel>& panels, std::size_t each) {
   }
 }
 
+/// Titles of panels side by side stand beside the time in all of them or above it.
+void align_titles(std::vector<ViewPanel>& panels) {
+  if (panels.size() < 2) return;
+  std::string title, parameters;  // by the number of bytes: texts of one font
+  for (const ViewPanel& p : panels) {
+    if (p.captions.title.size() > title.size()) title = p.captions.title;
+    if (p.captions.parameters.size() > parameters.size()) parameters = p.captions.parameters;
+  }
+  for (ViewPanel& p : panels) {
+    p.captions.widest_title = title;
+    p.captions.widest_parameters = parameters;
+  }
+}
+
 /// What else all frames of the panel share: room of the inset, speed of the longest arrow.
 void complete(ViewPanel& p, const SourceMeasures& m) {
   const PictureSource& source = p.source;
   render::check_framing(p.framing, m.summaries);
   frame_inset(p, m.summaries);
-  const std::vector<std::int64_t> looked = instants_to_look_at(source.trajectory);
-  p.arrow_net = arrow_net_of(p, {looked.front(), looked[looked.size() / 2], looked.back()});
+  p.arrow_net = arrow_net_of(p, m.summaries);
   for (const render::StateSummary& summary : m.summaries) {
     const render::FlowArrows arrows = arrows_of(p, summary);
     if (arrows.velocities.rows() > 0)
@@ -238,6 +251,7 @@ Production prepare_pictures(const std::vector<PictureSource>& sources, std::opti
     for (std::size_t k = 0; k < sources.size(); ++k) alike.push_back(&production.panels[k * cameras.size() + c]);
     share_scale(alike);
   }
+  align_titles(production.panels);
   for (std::size_t k = 0; k < production.panels.size(); ++k)
     complete(production.panels[k], measures[k / cameras.size()]);
   share_arrows(production.panels, cameras.size());

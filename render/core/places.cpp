@@ -12,6 +12,13 @@ OverlaySizes overlay_sizes(int picture_height) {
           .small = std::max(21 * unit, 7.5)};
 }
 
+double colour_bar_room(int picture_height) {
+  constexpr double numbers = 4.2;  // "−12000", in heights of its text
+  const OverlaySizes sizes = overlay_sizes(picture_height);
+  // margin, tick, gaps on both sides, and the colours, of which small pictures have 6 px
+  return sizes.margin + 25 * sizes.unit + std::max(22 * sizes.unit, 6.0) + numbers * sizes.small;
+}
+
 bool apart(const Box& a, const Box& b) {
   return a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
 }

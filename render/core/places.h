@@ -18,6 +18,8 @@ struct OverlaySizes {
   double small;   ///< other text
 };
 OverlaySizes overlay_sizes(int picture_height);
+/// What a colour bar with its numbers takes at the right edge, px.
+double colour_bar_room(int picture_height);
 
 /// The box of the inset: height as a share of the picture's, width relative to its height.
 inline constexpr double inset_height = 0.21, inset_aspect = 1.35;

@@ -42,10 +42,12 @@ double clear_of_bodies(const std::vector<Shadow>& shadows, const glm::dvec2& tai
   };
   double nearest2 = far * far;
   for (const Shadow& shadow : shadows) {
-    if (glm::length(away_from(shadow.centre)) > shadow.radius + far) continue;
+    if (glm::length(away_from(shadow.centre)) > shadow.radius + shadow.reach + far) continue;
     for (const glm::dvec2& p : shadow.points) {
       const glm::dvec2 away = away_from(p);
-      nearest2 = std::min(nearest2, glm::dot(away, away));
+      double apart2 = glm::dot(away, away);
+      if (shadow.reach > 0) apart2 = std::pow(std::max(std::sqrt(apart2) - shadow.reach, 0.0), 2);
+      nearest2 = std::min(nearest2, apart2);
     }
   }
   return glm::smoothstep(near, far, std::sqrt(nearest2));

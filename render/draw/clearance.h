@@ -13,6 +13,7 @@ struct Shadow {
   std::vector<glm::dvec2> points;
   glm::dvec2 centre{0};
   double radius = 0;
+  double reach = 0;  ///< of few points: what is so near to one may be covered
 };
 std::vector<Shadow> shadows(const Frame& frame);
 /// Of a body of which no more than these points are known.

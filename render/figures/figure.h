@@ -40,6 +40,8 @@ struct Curve {
   double phase = -1;  ///< 0..1: marks along the curve, the first after this share of their distance; else at the points
   bool line = true;
   int dash = 0;
+  bool directed = false;       ///< heads of arrows tell which way it runs
+  bool fine = false;           ///< one of several that lie on each other: thinner, with small marks
   bool faint = false;          ///< one of many: thin
   bool guide = false;          ///< a value to compare with: thin, in ink
   bool ink_in_legend = false;  ///< the name tells a mark or dash, whatever the colour

@@ -95,6 +95,7 @@ std::vector<LegendEntry> legend_of(const Diagram& diagram, const Theme& theme) {
     const auto has_it = [&](const DiagramPoint& p) { return p.kind == kind; };
     if (std::none_of(diagram.points.begin(), diagram.points.end(), has_it)) continue;
     LegendEntry entry;
+    entry.line = false;
     entry.name = diagram.kinds[kind];
     entry.colour = curve_colour(theme, look_of(kind).colour);
     entry.marker = look_of(kind).marker;

@@ -1,4 +1,5 @@
 // A sheet of pictures, (a) to (h), all at one scale.
+#include "render/core/style.h"
 #include "render/figures/figure_kinds.h"
 #include "render/scene/framing.h"
 
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 
 namespace render {
@@ -182,6 +184,17 @@ void draw_field_bar(const Pen& pen, const Legend& field, double left, double rig
     cairo_close_path(pen.cairo);
     cairo_fill(pen.cairo);
   };
+  if (field.mirrored) {  // the dots of values in the lower half
+    const double spacing = height / 2;
+    for (double x = bar.left + bar.width / 2 - spacing / 2; x > bar.left + spacing / 4; x -= spacing)
+      for (const double y : {bar.top + spacing / 2, bottom - spacing / 2}) {
+        const double share = (x - bar.left) / bar.width, shown = std::min((0.5 - share) / SignDots::full, 1.0);
+        set_colour(pen, sign_dot_colour(mapped(field.colours, share)));
+        cairo_new_path(pen.cairo);
+        cairo_arc(pen.cairo, x, y, SignDots::radius * spacing * shown, 0, 2 * std::numbers::pi);
+        cairo_fill(pen.cairo);
+      }
+  }
   if (field.below) outside(bar.left, bar.left - point, 0);
   if (field.above) outside(end, end + point, 1);
   set_colour(pen, theme.ink);

@@ -12,6 +12,8 @@
 namespace render {
 namespace {
 
+constexpr double mark_spacing = 8;  // along a curve, in heights of the text
+
 // A curve in the coordinates of its panel.
 using Points = std::pair<std::vector<double>, std::vector<double>>;
 Points in_panel(const Plot& plot, const Curve& curve) {
@@ -106,9 +108,11 @@ struct Grid {
   double width = 0;   ///< of the page, pt
   double height = 0;  ///< likewise; 0: follows the panels
 
-  double aspect() const {
-    return !stacked ? 0.72 : rows > 1 ? 0.4 : 0.55;
-  }  ///< height / width of a panel where the page is free
+  /// Of a panel where the page is free. A narrow one is up to as high as it is wide.
+  double height_of(double panel_width, const Theme& theme) const {
+    if (stacked) return (rows > 1 ? 0.4 : 0.55) * panel_width;
+    return std::max(0.72 * panel_width, std::min(panel_width, 15 * theme.text));
+  }
 };
 
 Grid grid_of(const FigureParameters& parameters, const Page& page, std::size_t count, bool stacked) {
@@ -135,6 +139,9 @@ void share_time(std::vector<PlacedPlot>& placed) {
   for (const PlacedPlot& p : placed) span = {std::min(span.low, p.panel.x.low), std::max(span.high, p.panel.x.high)};
   for (PlacedPlot& p : placed) p.panel.x = span;
 }
+
+/// Of the arrows on curves, pt.
+double head_size(const Theme& theme) { return 5.5 * theme.stroke; }
 
 double key_room(const Panel& panel, const Theme& theme) {
   return std::max(panel.width - 2.2 * theme.label, 6 * theme.text);
@@ -188,7 +195,7 @@ std::optional<double> place_panels(std::vector<PlacedPlot>& placed, const Grid& 
   const double free_width = (grid.width - across) / static_cast<double>(grid.columns);
   const double width = std::max(free_width, 4 * theme.text);
   const double free_height = (grid.height - down) / static_cast<double>(grid.rows);
-  const double height = grid.height > 0 ? std::max(free_height, 3 * theme.text) : grid.aspect() * width;
+  const double height = grid.height > 0 ? std::max(free_height, 3 * theme.text) : grid.height_of(width, theme);
   std::vector<double> lefts, tops;
   double x = 0, y = top;
   for (const Margins& c : margins.column) {
@@ -214,7 +221,9 @@ std::optional<double> place_panels(std::vector<PlacedPlot>& placed, const Grid& 
 /// Where a single panel has room for the legend, if it has.
 std::optional<Eigen::Vector2d> place_within(const PlacedPlot& p, const LaidLegend& legend, const Theme& theme) {
   std::vector<Points> curves;
+  bool directed = false;
   for (const Curve& curve : p.plot.curves) {
+    directed = directed || curve.directed;
     Points c = in_panel(p.plot, curve);
     for (std::size_t k = 0; k < std::min(curve.error.size(), curve.x.size()); ++k) {  // bars, as lines of their own
       const double x = c.first[k], y = c.second[k], e = curve.error[k], none = std::nan("");
@@ -224,7 +233,8 @@ std::optional<Eigen::Vector2d> place_within(const PlacedPlot& p, const LaidLegen
   }
   const double edge = 0.7 * theme.text;
   const std::optional<Eigen::Vector2d> place =
-      free_place(p.panel, {legend.width + 2 * edge, legend.height + edge}, curves, 2.2 * theme.stroke);
+      free_place(p.panel, {legend.width + 2 * edge, legend.height + edge}, curves,
+                 directed ? 0.5 * head_size(theme) : 2.2 * theme.stroke);
   if (!place) return {};
   return Eigen::Vector2d(place->x() + edge, place->y() + 0.55 * edge);
 }
@@ -249,7 +259,7 @@ std::optional<PlacedPlots> placed_with(const Theme& theme, const Grid& grid, con
     if (letters && count > 1) p.letter = fmt::format("({})", letter(k));
     set_ranges(p, grid.stacked);
     p.panel.width = grid.width / static_cast<double>(grid.columns) * 0.8;  // to begin with
-    p.panel.height = grid.aspect() * p.panel.width;
+    p.panel.height = grid.height_of(p.panel.width, theme);
   }
   if (grid.stacked) share_time(result.plots);
   // Numbers and labels decide margins, margins the panels, and panels the numbers: some rounds settle it.
@@ -293,6 +303,31 @@ std::optional<PlacedPlots> placed_with(const Theme& theme, const Grid& grid, con
   return result;
 }
 
+/// Heads on the directed curves, away from the marks of all curves.
+void draw_directions(const Pen& pen, const PlacedPlot& p) {
+  std::vector<Eigen::Vector2d> taken;
+  for (const Curve& curve : p.plot.curves) {
+    if (!curve.marker) continue;
+    const Points c = in_panel(p.plot, curve);
+    if (curve.phase >= 0) {
+      const std::vector<Eigen::Vector2d> marks =
+          marks_along(p.panel, c.first, c.second, mark_spacing * pen.theme.text, curve.phase);
+      taken.insert(taken.end(), marks.begin(), marks.end());
+      continue;
+    }
+    for (std::size_t k = 0; k < c.first.size(); ++k)
+      taken.emplace_back(p.panel.page_x(c.first[k]), p.panel.page_y(c.second[k]));
+  }
+  const double size = head_size(pen.theme);
+  for (const Curve& curve : p.plot.curves) {
+    if (!curve.directed) continue;
+    const Points c = in_panel(p.plot, curve);
+    const std::vector<ArrowHead> heads = arrow_heads(p.panel, c.first, c.second, size, taken);
+    draw_arrow_heads(pen, p.panel, heads, size, colour_of(pen.theme, curve));
+    for (const ArrowHead& head : heads) taken.emplace_back(head.tip - 0.5 * size * head.along);
+  }
+}
+
 void draw_one(const Pen& pen, const PlacedPlot& p) {
   draw_grid(pen, p.panel, p.axes);
   for (const Curve& curve : p.plot.curves) {
@@ -305,13 +340,19 @@ void draw_one(const Pen& pen, const PlacedPlot& p) {
     const Colour colour = colour_of(pen.theme, curve);
     if (curve.line)
       draw_polyline(pen, p.panel, c.first, c.second,
-                    {colour, curve.faint || curve.guide ? 0.5 : 1, curve.faint ? 0.7 : 1, curve.dash});
+                    {colour,
+                     curve.faint || curve.guide ? 0.5
+                     : curve.fine               ? 0.65
+                                                : 1,
+                     curve.faint ? 0.7 : 1, curve.dash});
     if (!curve.marker) continue;
     if (curve.phase >= 0)
-      draw_markers_along(pen, p.panel, c.first, c.second, *curve.marker, colour, 8 * pen.theme.text, curve.phase);
+      draw_markers_along(pen, p.panel, c.first, c.second, *curve.marker, colour, mark_spacing * pen.theme.text,
+                         curve.phase);
     else
-      draw_markers(pen, p.panel, c.first, c.second, *curve.marker, colour, 1.8, curve.error);
+      draw_markers(pen, p.panel, c.first, c.second, *curve.marker, colour, curve.fine ? 1.1 : 1.8, curve.error);
   }
+  draw_directions(pen, p);
   draw_axes(pen, p.panel, p.axes);
   if (!p.letter.empty()) draw_title(pen, p.panel, p.letter);
   draw_legend(pen, p.key, p.panel.left + p.panel.width - p.key.width,

@@ -154,13 +154,13 @@ void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>&
   }
 }
 
-void draw_markers_along(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
-                        Marker marker, const Colour& colour, double spacing, double phase) {
+std::vector<Eigen::Vector2d> marks_along(const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                                         double spacing, double phase) {
+  std::vector<Eigen::Vector2d> marks;
   // Along the axis where the curve has one value a place, or noise would get a mark each; else along the curve.
   bool onward = true;
   for (std::size_t i = 1; i < x.size(); ++i) onward = onward && !(x[i] < x[i - 1]);
   double next = phase * spacing, at = 0;
-  bool any = false;
   for (std::size_t i = 1; i < std::min(x.size(), y.size()); ++i) {
     const double x0 = panel.page_x(x[i - 1]), y0 = panel.page_y(y[i - 1]), x1 = panel.page_x(x[i]),
                  y1 = panel.page_y(y[i]);
@@ -172,15 +172,86 @@ void draw_markers_along(const Pen& pen, const Panel& panel, const std::vector<do
     const double length = onward ? x1 - x0 : std::hypot(x1 - x0, y1 - y0);
     for (; length > 0 && next <= at + length; next += spacing) {
       const double share = (next - at) / length;
-      draw_marker(pen, marker, x0 + share * (x1 - x0), y0 + share * (y1 - y0), colour, 1.6);
-      any = true;
+      marks.emplace_back(x0 + share * (x1 - x0), y0 + share * (y1 - y0));
     }
     at += length;
   }
   // A short curve is marked at its end.
-  for (std::size_t i = std::min(x.size(), y.size()); !any && i-- > 0;)
-    if (any = std::isfinite(x[i]) && std::isfinite(y[i]); any)
-      draw_marker(pen, marker, panel.page_x(x[i]), panel.page_y(y[i]), colour, 1.6);
+  for (std::size_t i = std::min(x.size(), y.size()); marks.empty() && i-- > 0;)
+    if (std::isfinite(x[i]) && std::isfinite(y[i])) marks.emplace_back(panel.page_x(x[i]), panel.page_y(y[i]));
+  return marks;
+}
+
+void draw_markers_along(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                        Marker marker, const Colour& colour, double spacing, double phase) {
+  for (const Eigen::Vector2d& at : marks_along(panel, x, y, spacing, phase))
+    draw_marker(pen, marker, at.x(), at.y(), colour, 1.6);
+}
+
+std::vector<ArrowHead> arrow_heads(const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                                   double size, const std::vector<Eigen::Vector2d>& taken) {
+  constexpr double step = 0.1, clear = 1.1, two = 12;  // lengths of a head
+  // Points of the curve at equal distances; a gap is no part of it.
+  std::vector<Eigen::Vector2d> points;
+  double rest = 0;
+  for (std::size_t i = 1; i < std::min(x.size(), y.size()); ++i) {
+    const Eigen::Vector2d from(panel.page_x(x[i - 1]), panel.page_y(y[i - 1])),
+        to(panel.page_x(x[i]), panel.page_y(y[i]));
+    if (!from.allFinite() || !to.allFinite()) continue;
+    const double length = (to - from).norm();
+    double at = rest;
+    for (; at < length; at += step * size) points.emplace_back(from + at / length * (to - from));
+    rest = at - length;
+  }
+  // What a periodic motion draws again and again is told by its first round.
+  const double round = 2 * (panel.width + panel.height);
+  const auto last =
+      static_cast<std::ptrdiff_t>(std::min<double>(static_cast<double>(points.size()), round / (step * size)));
+  const auto half = static_cast<std::ptrdiff_t>(0.5 / step);
+  std::vector<ArrowHead> heads;
+  const auto add = [&](double share) {
+    const auto wanted = static_cast<std::ptrdiff_t>(share * static_cast<double>(last));
+    for (std::ptrdiff_t k = 0; k < last; ++k)  // the nearest place that is free, before or behind
+      for (const std::ptrdiff_t middle : {wanted + k, wanted - k}) {
+        if (middle < half || middle + half >= last) continue;
+        const Eigen::Vector2d &at = points[static_cast<std::size_t>(middle)],
+                              &tail = points[static_cast<std::size_t>(middle - half)],
+                              &tip = points[static_cast<std::size_t>(middle + half)];
+        const auto aside = [&](const Eigen::Vector2d& p) { return (p - at).norm() >= clear * size; };
+        const bool straight = (tip - tail).norm() > 0.8 * size;
+        const bool apart = std::all_of(heads.begin(), heads.end(),
+                                       [&](const ArrowHead& h) { return (h.tip - tip).norm() > 2 * size; });
+        if (!straight || !apart || !std::all_of(taken.begin(), taken.end(), aside)) continue;
+        const Eigen::Vector2d along = (tip - tail).normalized();
+        heads.push_back({at + 0.5 * size * along, along});
+        return;
+      }
+  };
+  if (last <= 2 * half) return heads;
+  const bool long_enough = static_cast<double>(last) * step > two;
+  add(long_enough ? 0.3 : 0.55);
+  if (long_enough) add(0.75);
+  return heads;
+}
+
+void draw_arrow_heads(const Pen& pen, const Panel& panel, const std::vector<ArrowHead>& heads, double size,
+                      const Colour& colour) {
+  cairo_t* cairo = pen.cairo;
+  cairo_save(cairo);
+  clip_to(cairo, panel);
+  set_colour(pen, colour);
+  for (const ArrowHead& head : heads) {
+    const Eigen::Vector2d aside(-head.along.y(), head.along.x()), back = head.tip - size * head.along;
+    cairo_new_path(cairo);
+    cairo_move_to(cairo, head.tip.x(), head.tip.y());
+    for (const Eigen::Vector2d& corner :
+         {Eigen::Vector2d(back + 0.45 * size * aside), Eigen::Vector2d(back + 0.25 * size * head.along),
+          Eigen::Vector2d(back - 0.45 * size * aside)})
+      cairo_line_to(cairo, corner.x(), corner.y());
+    cairo_close_path(cairo);
+    cairo_fill(cairo);
+  }
+  cairo_restore(cairo);
 }
 
 void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height,

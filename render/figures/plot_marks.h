@@ -33,6 +33,22 @@ void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>&
 /// Marks on a line, about `spacing` apart on the page, the first after the share `phase` of it.
 void draw_markers_along(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
                         Marker marker, const Colour& colour, double spacing, double phase);
+/// Where such marks stand, on the page.
+std::vector<Eigen::Vector2d> marks_along(const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                                         double spacing, double phase);
+
+/// The head of an arrow on a curve, on the page.
+struct ArrowHead {
+  Eigen::Vector2d tip, along;  ///< along: unit vector
+};
+/// Of a curve that is `size` or more long: one, of a long one two, on the first round of it, away from the points
+/// `taken` by marks. Heads are `size` long, pt.
+std::vector<ArrowHead> arrow_heads(const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
+                                   double size, const std::vector<Eigen::Vector2d>& taken);
+/// Nearly as wide as long; clipped to the panel.
+void draw_arrow_heads(const Pen& pen, const Panel& panel, const std::vector<ArrowHead>& heads, double size,
+                      const Colour& colour);
+
 /// A picture, RGB or RGBA, in a rectangle of the page; smooth: interpolated when enlarged.
 void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height,
                   bool smooth = true);

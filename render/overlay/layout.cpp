@@ -113,10 +113,17 @@ void place_texts(Page& p) {
   if (!captions.title.empty()) {
     double aside = time.empty() ? 0 : p.ruler.width(time_size, time);
     for (const std::string& line : parameters) aside = std::max(aside, p.ruler.width(p.s.small, line));
+    if (view.caption && !captions.widest_parameters.empty())
+      for (const std::string& line : lines_of(p.ruler, p.s.small, captions.widest_parameters, room))
+        aside = std::max(aside, p.ruler.width(p.s.small, line));
     const double middle = p.width / 2, left = p.margin + aside + (aside > 0 ? p.s.large : 0);
-    const double beside = 2 * std::min(middle - left, end - middle), full = p.ruler.width(p.s.large, captions.title);
+    const double beside = 2 * std::min(middle - left, end - middle);
+    const auto widest = [&](double size) {
+      return std::max(p.ruler.width(size, captions.title), p.ruler.width(size, captions.widest_title));
+    };
+    const double full = widest(p.s.large);
     const double size = std::clamp(p.s.large * beside / full, p.s.small, p.s.large);
-    if (p.ruler.width(size, captions.title) <= beside) {
+    if (widest(size) <= beside) {
       add_line(p, Role::title, captions.title, size, middle - p.ruler.width(size, captions.title) / 2,
                top + 0.76 * (p.s.large - size));
     } else {

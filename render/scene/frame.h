@@ -56,11 +56,13 @@ struct FlowLines {
 
 /// UTF-8; `_{...}` and `^{...}` are subscripts and superscripts. Empty: not drawn.
 struct Captions {
-  std::string time;             ///< "γ̇t = 12.50"
-  std::string parameters;       ///< "Ca = 2.0   λ = 1   ν = 0.85"
-  std::string errors;           ///< below the parameters: "error of position 1.1·10^{−3} R_{0}"
-  std::string note;             ///< below these, highlighted: a temporary remark for the viewer
-  std::string title;            ///< in the middle of the upper edge
+  std::string time;          ///< "γ̇t = 12.50"
+  std::string parameters;    ///< "Ca = 2.0   λ = 1   ν = 0.85"
+  std::string errors;        ///< below the parameters: "error of position 1.1·10^{−3} R_{0}"
+  std::string note;          ///< below these, highlighted: a temporary remark for the viewer
+  std::string title;         ///< in the middle of the upper edge
+  std::string widest_title;  ///< of all panels of a picture, and their parameters: titles stand alike in all of them
+  std::string widest_parameters;
   std::string panel;            ///< in the middle of the lower edge: which view this is
   std::string scale = "R_{0}";  ///< above the scale bar
   double scale_length = 1;      ///< of the bar, in lengths of the scene

@@ -1,6 +1,7 @@
 #include "render/scene/framing.h"
 
 #include "render/core/places.h"
+#include "render/core/style.h"
 
 #include "sim/sphere/basis.h"
 
@@ -205,7 +206,10 @@ void place_eye(Framing& framing, const ViewParameters& view) {
 void fit(Framing& framing, const ViewParameters& view, std::span<const StateSummary> states) {
   const double zoom = view.zoom;
   const double margin = framing.vesicle >= 0 ? neighbourhood : 1;
-  const double width = view.flow_profile ? bodies_width_beside_profile : bodies_width;
+  double width = view.flow_profile ? bodies_width_beside_profile : bodies_width;
+  constexpr double least = 0.6;  // narrow pictures may have no bar
+  if (view.colour_bar && (find_style(view.style).field || view.colour_by != "order"))
+    width = std::min(width, std::max(1 - 2 * colour_bar_room(view.size.at(1)) / view.size.at(0), least));
   const double tx = tangent_of_half_angle * framing.aspect * width / margin;
   const double ty = tangent_of_half_angle * bodies_height / margin;
   double distance = 0, half_height = 0;

@@ -152,6 +152,37 @@ TEST_CASE("a page holds the trajectory's positions to the precision that it stat
   CHECK(quantum <= app::page_quantum(app::page_position_error, 6) * 1.0001);
 }
 
+TEST_CASE("a page of two vesicles and two hundred frames, with all that it can show, is below a megabyte", "[page]") {
+  // Two that pass each other: nothing repeats, and frames are as far apart as in a movie.
+  const Desk desk(R"(title = "an encounter"
+[flow]
+kind = "shear"
+[time]
+end = 20
+save_every = 0.1
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.85
+center = [-4, 0, 0.25]
+order = 8
+[[vesicle]]
+shape = "prolate"
+reduced_volume = 0.85
+center = [4, 0, -0.25]
+order = 8
+[view]
+field = "tension"
+inset = true
+flow_profile = true
+cut = "common"
+)");
+  REQUIRE(desk({"simulate", desk.file("s.toml"), "-o", desk.file("t.h5"), "-q"}).status == 0);
+  REQUIRE(sim::TrajectoryReader(desk.file("t.h5")).count() == 201);
+  REQUIRE(desk({"export", desk.file("t.h5"), "--html", desk.file("p.html"), "-q"}).status == 0);
+  CHECK(std::filesystem::file_size(desk.file("p.html")) < 1000000);
+  CHECK(support::read_file(desk.file("p.html")).find("\"frames\":201,") != std::string::npos);
+}
+
 TEST_CASE("titles cannot leave their place in a page", "[page]") {
   std::string text = commands::scene;
   const std::string hostile = "</script><script>alert(1)</script><!-- {{data}} & \\\"' ";

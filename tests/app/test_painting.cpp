@@ -180,6 +180,23 @@ TEST_CASE("where copies of a cell fill the picture the net of arrows is finer, e
   CHECK(net() > 1);
 }
 
+TEST_CASE("the net of arrows is chosen from the whole movie: a crowd that opens after its start has the usual one") {
+  const support::TemporaryFolder folder;
+  app::Settings settings = sphere_in_cell("size = [1280, 720]\nviews = [\"flow-gradient\", \"along-flow\"]\n");
+  const sim::TrajectoryReader trajectory(simulated(settings, folder));
+  settings.view.copies = {2, 0, 2};
+  const app::Production production = app::prepare_pictures({{trajectory, settings}});
+  const app::ViewPanel& panel = production.panels.front();
+  const render::StateSummary crowded = render::summarize(trajectory.state(0));
+  render::StateSummary open = crowded;  // the same places, and hardly anything there
+  for (glm::vec3& point : open.points) point *= 0.01F;
+  std::vector<render::StateSummary> all(21, crowded);
+  CHECK(app::arrow_net_of(panel, all) > 1);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (k % 10 != 0) all[k] = open;
+  CHECK(app::arrow_net_of(panel, all) == 1);
+}
+
 TEST_CASE("no streamline of a picture is a stub") {
   const support::TemporaryFolder folder;
   const app::Settings settings = sphere_in_cell("size = [640, 360]\nstreamlines = \"laboratory\"\n");

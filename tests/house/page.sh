@@ -36,8 +36,37 @@ alike "$folder/t.h5" "" --set view.zoom=0.3 --set view.camera=along-flow
   -o "$folder/cell.h5"
 alike "$folder/cell.h5" "" --set view.zoom=0.5 --set view.camera=three-quarter
 
+# One plane opens both of a pair of unlike vesicles, where a movie has it: across their long axis, so that half a pixel
+# aside another one would show.
+"$program" simulate "$(dirname -- "$scene")/encounter.toml" --set time.end=2 --set time.save_every=1 --set 'vesicle.0.radius=0.7' \
+  --set 'vesicle.0.center=[-2, 0, 0.4]' --set 'vesicle.1.center=[1.5, 0, -0.4]' -q -o "$folder/pair.h5"
+tolerances=(--channel 24 --share 0.02)
+alike "$folder/pair.h5" "&style=cutaway" --set view.camera=three-quarter --set view.style=cutaway --set view.cut=common \
+  --set 'view.cut_normal=[-0.3, -1, 0.2]'
+
+# The section in the inset has the area of the figure of cross-sections.
+"$program" export "$folder/t.h5" --html "$folder/page.html" --set view.inset=true -q
+"$program" figure cross-sections "$folder/t.h5" --set 'figure.times=[2]' -q -o "$folder/section"
+cat >"$folder/area.js" <<'ENDJS'
+(() => {
+  const page = JSON.parse(document.getElementById("data").textContent), box = document.getElementById("inset").getBoundingClientRect();
+  const points = document.querySelector("#inset path").getAttribute("d").match(/[-.\d]+ [-.\d]+/g).map(pair => pair.split(" ").map(Number));
+  let twice = 0;
+  points.forEach(([x, y], k) => { const [u, v] = points[(k + 1) % points.length]; twice += x * v - u * y; });
+  return Math.abs(twice) / 2 * (2 * page.inset.half_height / box.height) ** 2;
+})()
+ENDJS
+shown=$("$browse" "file://$folder/page.html#frame=2" 1440x900 ask "$folder/area.js")
+python3 - "$folder/section.csv" "$shown" <<'ENDPY'
+import csv, sys
+points = [(float(row["x"]), float(row["z"])) for row in csv.DictReader(open(sys.argv[1]))]
+area = abs(sum(x * v - u * z for (x, z), (u, v) in zip(points, points[1:] + points[:1]))) / 2
+# points of the inset are rounded to a tenth of a pixel of a box of some 190
+assert abs(float(sys.argv[2]) / area - 1) < 0.01, f"the inset's section has the area {sys.argv[2]}, the figure's {area}"
+ENDPY
+
 # On a screen and on a telephone: everything is in the window, no text lies on another, and fingers can hit the controls.
-"$program" export "$folder/t.h5" --html "$folder/page.html" --set view.field=tension --set view.flow_profile=true -q
+"$program" export "$folder/t.h5" --html "$folder/page.html" --set view.field=tension --set view.flow_profile=true --set view.inset=true -q
 cat >"$folder/look.js" <<'EOF'
 (() => {
   const faults = [], boxes = [], range = document.createRange();
@@ -56,6 +85,9 @@ cat >"$folder/look.js" <<'EOF'
   const profile = document.querySelector("#profile g");
   if (innerWidth > innerHeight !== profile.childElementCount > 0) faults.push("the profile is not in wide windows alone");
   add("profile", profile);
+  const inset = document.getElementById("inset");
+  if (getComputedStyle(inset).display === "none" && document.getElementById("keys").hidden) faults.push("the inset finds no place");
+  add("inset", inset);
   if (!document.getElementById("keys").hidden) add("keys", document.getElementById("keys"));
   for (const control of document.querySelectorAll("button, select, #scrub")) {
     add(control.id, control);

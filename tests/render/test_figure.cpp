@@ -497,6 +497,38 @@ TEST_CASE("letters that no font has are told") {
   CHECK(render::missing_letters(drawing) == "\U0010fffd");
 }
 
+TEST_CASE("heads of arrows follow a curve, point where it goes, and stay away from marks and each other") {
+  render::Panel panel;  // 100 x 100 pt, y downward on the page
+  panel.x = panel.y = {-1.1, 1.1};
+  constexpr double size = 6, turns = 3;
+  for (const double way : {1.0, -1.0}) {
+    std::vector<double> x, y;
+    for (int k = 0; k <= 600; ++k) {
+      x.push_back(std::cos(way * turns * 2 * std::numbers::pi * k / 600));
+      y.push_back(std::sin(way * turns * 2 * std::numbers::pi * k / 600));
+    }
+    const double radius = panel.page_x(1) - panel.page_x(0);
+    const Eigen::Vector2d middle(panel.page_x(0), panel.page_y(0));
+    std::vector<Eigen::Vector2d> taken;
+    for (const double degrees : {0.0, 100.0, 200.0, 300.0})
+      taken.emplace_back(middle + radius * Eigen::Vector2d(std::cos(degrees / 57.3), std::sin(degrees / 57.3)));
+    const std::vector<render::ArrowHead> heads = render::arrow_heads(panel, x, y, size, taken);
+    REQUIRE(heads.size() == 2);  // a long curve, however often it goes round
+    for (const render::ArrowHead& head : heads) {
+      const Eigen::Vector2d at = head.tip - size / 2 * head.along - middle;
+      CHECK(at.norm() == Approx(radius).epsilon(0.001));
+      // counter-clockwise in data is clockwise on a page whose y points downward
+      const Eigen::Vector2d tangent = way * Eigen::Vector2d(at.y(), -at.x()) / at.norm();
+      CHECK(head.along.dot(tangent) > 0.999);
+      for (const Eigen::Vector2d& mark : taken) CHECK((at + middle - mark).norm() > size);
+    }
+    CHECK((heads[0].tip - heads[1].tip).norm() > 2 * size);
+  }
+  const std::vector<double> none{0.1, 0.1}, gap{0, std::nan("")};
+  CHECK(render::arrow_heads(panel, none, none, size, {}).empty());
+  CHECK(render::arrow_heads(panel, gap, gap, size, {}).empty());
+}
+
 TEST_CASE("a legend within a panel lies where no curve runs, or nowhere") {
   render::Panel panel;
   panel.x = panel.y = {0, 1};

@@ -33,6 +33,7 @@ void check_golden(const std::string& name, const render::Frame& frame) {
 render::ViewParameters small_view() {
   render::ViewParameters view;
   view.size = {320, 240};
+  view.colour_bar = false;
   view.time_stamp = view.caption = view.scale_bar = false;  // text depends on the versions of Cairo and FreeType
   return view;
 }

@@ -61,6 +61,7 @@ std::vector<render::Plot> plots_of(std::size_t groups) {
       curve.name = titles[g];
       curve.colour = g;
       curve.marker = render::group_marker(g);
+      curve.directed = true;
       for (int i = 0; i <= 8; ++i) {
         curve.x.push_back(i);
         curve.y.push_back(std::pow(10, -i * (1 + 0.2 * static_cast<double>(g))));
@@ -193,6 +194,31 @@ TEST_CASE("in no figure a text crosses a text, a curve or the edge of the page")
       }
 }
 
+TEST_CASE("the bar of a sheet has the dots of negative values where its pictures have them, and nothing else changes") {
+  for (const render::FigureRow& row : render::figures()) {
+    if (row.needs != render::FigureNeeds::stills) continue;
+    render::FigureInput in = input_of(row, "85", 2);
+    const render::Image without = without_text(row.draw(in).drawing);
+    in.field->mirrored = true;
+    const render::Image with = without_text(row.draw(in).drawing);
+    REQUIRE(with.width == without.width);
+    int changed = 0, top = with.height, bottom = 0, right = 0;
+    for (int y = 0; y < with.height; ++y)
+      for (int x = 0; x < with.width; ++x)
+        if (std::abs(with.at(x, y)[1] - without.at(x, y)[1]) > 8) {
+          ++changed;
+          top = std::min(top, y);
+          bottom = std::max(bottom, y);
+          right = std::max(right, x);
+        }
+    INFO(row.name);
+    CHECK(changed > 30);
+    CHECK(bottom - top < 9);  // two rows in a bar of 0.8 x 9 pt
+    // the upper half of the bar, at the right edge of the page, has none
+    CHECK(right < 0.8 * with.width);
+  }
+}
+
 TEST_CASE("in no serif figure on a tiny page a text crosses another") {
   for (const render::FigureRow& row : render::figures()) {
     if (row.needs != render::FigureNeeds::series && row.needs != render::FigureNeeds::plots) continue;
@@ -212,27 +238,46 @@ TEST_CASE("words of a PDF are found where the layout put them, and none lies on 
     WARN("without pdftotext (poppler-utils) the text of PDF files is not read");
     return;
   }
-  for (const render::FigureRow& row : render::figures()) {
-    INFO(row.name);
-    const render::Drawing drawing = row.draw(input_of(row, "85", 2)).drawing;
-    render::write_drawing_pdf(folder / "f.pdf", drawing);
-    const std::vector<Word> words = words_of_pdf(folder / "f.pdf");
-    const std::vector<render::PlacedText> texts = render::texts_of(drawing);
-    CHECK(words.size() >= texts.size());
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      const Word& w = words[i];
-      INFO(w.text);
-      const double x = (w.left + w.right) / 2, y = (w.top + w.bottom) / 2;
-      CHECK(x > 0);
-      CHECK(x < drawing.width);
-      // The middle of each word lies in the box of a text, but for its height: that of the font.
-      bool within = false;
-      for (const render::PlacedText& t : texts) {
-        const double room = 0.5 * t.text.size;
-        within = within ||
-                 (x > t.box.left - room && x < t.box.right + room && y > t.box.top - room && y < t.box.bottom + room);
+  for (const render::FigureRow& row : render::figures())
+    for (const char* page : pages)
+      for (const std::size_t groups : {1, 2, 5}) {
+        INFO(row.name << ", page " << page << ", trajectories " << groups);
+        const render::Drawing drawing = row.draw(input_of(row, page, groups)).drawing;
+        render::write_drawing_pdf(folder / "f.pdf", drawing);
+        const std::vector<Word> words = words_of_pdf(folder / "f.pdf");
+        const std::vector<render::PlacedText> texts = render::texts_of(drawing);
+        CHECK(words.size() >= texts.size());
+        std::vector<std::size_t> owner;
+        for (const Word& w : words) {
+          const double x = (w.left + w.right) / 2, y = (w.top + w.bottom) / 2;
+          // The middle of each word lies in the box of a text, but for its height: that of the font.
+          double nearest = 1e300;
+          std::size_t own = 0;
+          for (std::size_t t = 0; t < texts.size(); ++t) {
+            const render::TextBox& box = texts[t].box;
+            const double aside =
+                std::max({box.left - x, x - box.right, box.top - y, y - box.bottom}) / texts[t].text.size;
+            if (aside < nearest) own = t;
+            nearest = std::min(nearest, aside);
+          }
+          owner.push_back(own);
+          INFO(w.text);
+          CHECK(nearest < 0.5);
+          // likewise a quarter of the height of the font, which of turned text lies across
+          const double empty = std::min(w.right - w.left, w.bottom - w.top) / 4;
+          CHECK(w.left > -empty);
+          CHECK(w.right < drawing.width + empty);
+        }
+        for (std::size_t i = 0; i < words.size(); ++i)
+          for (std::size_t k = 0; k < i; ++k) {
+            if (owner[i] == owner[k]) continue;
+            // Of the height of the font, a quarter above and below has no letters.
+            const Word &a = words[i], &b = words[k];
+            const double down_a = (a.bottom - a.top) / 4, down_b = (b.bottom - b.top) / 4;
+            const bool across = a.left < b.right && b.left < a.right;
+            const bool down = a.top + down_a < b.bottom - down_b && b.top + down_b < a.bottom - down_a;
+            INFO(a.text << ", " << b.text);
+            CHECK_FALSE((across && down));
+          }
       }
-      CHECK(within);
-    }
-  }
 }

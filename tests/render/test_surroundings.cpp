@@ -173,6 +173,47 @@ TEST_CASE("no overlay of a picture meets another or its edge, whatever the size 
       }
 }
 
+TEST_CASE("the widest vesicle leaves room for the colour bar and its numbers") {
+  const render::Font font;
+  const sim::State state = surfaces::state_of({surfaces::ellipsoid({3, 0.4, 0.4}, Eigen::Matrix3d::Identity())});
+  for (const auto& [width, height] : {std::pair{1920, 1080}, {1200, 675}, {640, 360}, {600, 600}, {2000, 600}})
+    for (const double extreme : {1.5, 0.025, 1200.0}) {
+      render::ViewParameters view = surfaces::bare_view(width, height);
+      view.style = "field";
+      view.colour_bar = true;
+      render::Frame frame = surfaces::frame_of(state, view);
+      frame.legend.emplace().label = "σ R_{0}^{2}/κ_{b}";
+      frame.legend->low = -extreme;
+      frame.legend->high = extreme;
+      const render::OverlayLayout layout = render::lay_out(frame, font);
+      INFO(width << " x " << height << ", to " << extreme);
+      REQUIRE(layout.colour_bar);
+      double right = 0;
+      for (const glm::dvec3& point : frame.bodies[0].mesh.position)
+        right = std::max(right, (1 + frame.camera.picture_place(point).x) * width / 2);
+      CHECK(right < layout.bar.left - 2);
+      CHECK(right > 0.6 * width);
+    }
+}
+
+TEST_CASE("titles of panels side by side stand alike: beside the time in all of them or above it") {
+  const render::Font font;
+  const auto tops = [&](const std::string& title, const std::string& widest) {
+    render::Frame frame = crowded(640, 540, title, "λ = 1");
+    frame.view.inset = false;
+    frame.captions.widest_title = widest;
+    std::vector<double> found;
+    for (const render::TextPlace& text : render::lay_out(frame, font).texts)
+      if (text.role == render::TextPlace::Role::time || text.role == render::TextPlace::Role::title)
+        found.push_back(text.box.top);
+    return found;
+  };
+  const std::string wide = long_text, narrow = "Slipper";
+  CHECK(tops(wide, wide)[0] == tops(narrow, wide)[0]);
+  CHECK(tops(wide, wide)[1] == tops(narrow, wide)[1]);
+  CHECK(tops(narrow, "")[1] < tops(narrow, wide)[1]);  // alone it has room beside the time
+}
+
 TEST_CASE("what lies over a picture is drawn in its boxes") {
   const render::Font font;
   for (const auto& [width, height] : {std::pair{960, 540}, {480, 540}, {320, 180}}) {

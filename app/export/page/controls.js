@@ -236,13 +236,13 @@ class Controls {
 
   // Boxes of what lies over the picture, CSS pixels; of texts only what is written.
   overlays() {
-    const { element } = this, boxes = [element.bar.getBoundingClientRect(), document.querySelector("footer").getBoundingClientRect()];
+    const { element } = this, boxes = [element.bar.getBoundingClientRect(), element.keys.getBoundingClientRect(), document.querySelector("footer").getBoundingClientRect()];
     const range = document.createRange();
     for (const text of [element.time, element.parameters, element.title, element.scale, element.bar.querySelector("figcaption"), element.bar.querySelector("ol")]) {
       range.selectNodeContents(text);
       boxes.push(range.getBoundingClientRect());
     }
-    boxes.push(document.querySelector("#profile g").getBoundingClientRect());
+    boxes.push(document.querySelector("#profile g").getBoundingClientRect(), element.inset.getBoundingClientRect());
     return boxes.filter(box => box.width > 0 && box.height > 0);
   }
 
@@ -263,6 +263,7 @@ class Controls {
     element.style.value = this.style;
     element.bar.hidden = !page.styles.find(s => s.name === this.style).field;
     drawProfile(this, size);
+    if (page.inset) drawInset(this, size);
     scene.draw(this.style, camera, size, this.overlays());
     document.body.dataset.drawn = this.time;
   }
@@ -288,6 +289,6 @@ async function open() {
   const vesicles = page.vesicles.map(v => ({ position: reader.next(v.position, 3), labels: reader.next(v.labels, 3),
                                              tracers: reader.next(v.tracers, 3), field: reader.next(v.field, 1) }));
   new Controls(page, { vesicles, arrows: reader.next(page.arrows, 6, 6 * Math.max(...page.arrow_counts)), targets: reader.next(page.targets, 3, 3),
-                             profile: reader.next(page.profile, 1) });
+                             profile: reader.next(page.profile, 1), through: reader.next(page.through, 3, 3), insetCentre: reader.next(page.inset_centre, 3, 3) });
 }
 open().catch(complain);

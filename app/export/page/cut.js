@@ -17,24 +17,11 @@ function volumeCentre(mesh, position, first) {
   return [ox + x / volume, oy + y / volume, oz + z / volume];
 }
 
-// The centre of the area of all membranes.
-function areaCentre(mesh, position, count) {
-  const { indices, vertices } = mesh, sum = [0, 0, 0];
-  let area = 0;
-  for (let v = 0; v < count; ++v)
-    for (let i = 0; i < indices.length; i += 3) {
-      const [a, b, c] = [0, 1, 2].map(k => [0, 1, 2].map(x => position[3 * (v * vertices + indices[i + k]) + x]));
-      const twice = Math.hypot(...cross(combined([1, b], [-1, a]), combined([1, c], [-1, a])));
-      area += twice;
-      for (let k = 0; k < 3; ++k) sum[k] += twice * (a[k] + b[k] + c[k]) / 3;
-    }
-  return scaled(sum, 1 / (area || 1));
-}
-
-// Planes of all membranes: x, y, z and d of the half space normal . x + d > 0 that is taken away.
-function cutPlanes(mesh, position, count, { normal, offset, common }) {
+// Planes of all membranes: x, y, z and d of the half space normal . x + d > 0 that is taken away. through: what a common
+// plane goes through, but for its offset.
+function cutPlanes(mesh, position, count, { normal, offset, common }, through) {
   const plane = centre => [...normal, -dot(normal, centre) - offset];
-  if (common) return new Array(count).fill(plane(areaCentre(mesh, position, count)));
+  if (common) return new Array(count).fill(plane(through));
   return Array.from({ length: count }, (_, v) => plane(volumeCentre(mesh, position, v * mesh.vertices)));
 }
 

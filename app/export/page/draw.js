@@ -83,7 +83,7 @@ class Scene {
     this.time = time;
     this.sketches = [];
     this.shaded = undefined;
-    this.planes = undefined;
+    this.planes = this.inset = undefined;
     page.vesicles.forEach((vesicle, v) => {
       const series = data.vesicles[v], part = (name, size) => arrays[name].subarray(size * v * count, size * (v + 1) * count);
       const coefficients = numbersAt(series.position, time, vesicle.breaks);
@@ -196,11 +196,18 @@ class Scene {
 
   // The planes of the cuts and their edges, once for each time.
   open() {
-    const { page, mesh, arrays } = this;
+    const { page, mesh, arrays, data } = this;
     if (this.planes) return;
-    this.planes = cutPlanes(mesh, arrays.position, page.vesicles.length, page.cut);
+    this.planes = cutPlanes(mesh, arrays.position, page.vesicles.length, page.cut, numbersAt(data.through, this.time, []));
     this.cuts = page.vesicles.map((vesicle, v) => ({ vesicle, curves: cutEdges(mesh, arrays.position, v * mesh.vertices, this.planes[v]) }));
     this.fill("cut", (_, v) => this.planes[v]);
+  }
+
+  // Of the inset, once for each time.
+  sections() {
+    const { page, mesh, arrays } = this;
+    this.inset ??= page.vesicles.map((vesicle, v) => ({ vesicle, curves: cutEdges(mesh, arrays.position, v * mesh.vertices, [0, 1, 0, 0]) }));
+    return this.inset;
   }
 
   drawCuts(look) { this.surroundings.drawCuts(look, Math.round(this.time), this.cuts); }
