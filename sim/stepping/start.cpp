@@ -3,6 +3,7 @@
 #include "sim/measures/diagnostics.h"
 #include "sim/membrane/cell.h"
 #include "sim/sphere/norms.h"
+#include "sim/stepping/contrasts.h"
 #include "sim/stepping/saved_start.h"
 #include "sim/surface/correction.h"
 #include "sim/surface/dealias.h"
@@ -275,6 +276,7 @@ Dynamics initial_dynamics(const Model& s, std::span<const int> orders, const Sta
   }
   check_cell(s, d);
   check_magnitudes(s, d);
+  check_contrasts(s, d);
   const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, 0), s.ranks);
   if (gap.crossing) throw std::invalid_argument(pair_name(gap) + " overlap");
   if (gap.distance < gap_floor(s, d))
