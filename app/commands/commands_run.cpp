@@ -32,7 +32,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The scene as the command line changes it. The number of threads is none of its: results do not depend on it.
-Settings requested_scene(const Options& options) { return read_scene(options.inputs.front(), options.set); }
+Settings requested_scene(const Options& options, const fs::path& continued) {
+  return read_scene(options.inputs.front(), options.set, continued);
+}
 
 void say(const Options& options, const std::string& line) {
   if (!options.quiet) fmt::print("{}\n", printable(line));
@@ -80,9 +82,9 @@ int print_plan(const Settings& settings) {
 int run(const Options& options) {
   if (sim::announced_ranks() > 1)
     throw std::runtime_error("'run' is for one process; under mpirun, 'simulate', then 'render --shard auto'");
-  const Settings settings = requested_scene(options);
   const fs::path folder = options.output.empty() ? fs::path("out") / options.inputs.front().stem() : options.output;
   const fs::path trajectory = folder / "trajectory.h5";
+  const Settings settings = requested_scene(options, options.force ? fs::path() : trajectory);
   {
     OwnedFiles there(folder);
     protect_scene(options.inputs.front(), there, settings);
@@ -140,10 +142,10 @@ namespace {
 
 /// By the first rank, or the only one.
 int simulate_first(const Options& options, const sim::Ranks& ranks) {
-  const Settings settings = requested_scene(options);
   const fs::path file =
       options.output.empty() ? fs::path(options.inputs.front().stem().string() + ".h5") : options.output;
   const bool exists = fs::exists(file);
+  const Settings settings = requested_scene(options, exists && options.resume ? file : fs::path());
   if (exists && !options.resume && !options.force)
     throw std::runtime_error(fmt::format("'{}' exists; --resume continues it, --force replaces it", file.string()));
   if (options.dry_run) return print_plan(settings);

@@ -37,13 +37,14 @@ struct Sweep {
   std::vector<AskedResult> asked;
 };
 
-/// The scene at a point; a complaint about it names the option that it comes from.
-Settings scene_at(const Options& options, const std::vector<SweepAxis>& axes, const SweepPoint& point) {
+/// The scene at a point, perhaps of a run that is continued; a complaint about it names the option that it comes from.
+Settings scene_at(const Options& options, const std::vector<SweepAxis>& axes, const SweepPoint& point,
+                  const fs::path& trajectory) {
   std::vector<std::string> changes = options.set;
   const std::vector<std::string> own = changes_at(axes, point);
   changes.insert(changes.end(), own.begin(), own.end());
   try {
-    return read_scene(options.inputs.front(), changes);
+    return read_scene(options.inputs.front(), changes, trajectory);
   } catch (const std::runtime_error& error) {
     std::string text = error.what();
     for (const std::string& change : own)
@@ -79,13 +80,16 @@ std::vector<AskedResult> asked_of(const Options& options, const sim::Scene& scen
 }
 
 Sweep sweep_of(const Options& options, const fs::path& folder) {
-  Sweep sweep{read_scene(options.inputs.front(), options.set), {}, {}, {}};
-  for (const std::string& text : options.axes) sweep.axes.push_back(read_axis(text));
+  std::vector<SweepAxis> axes;
+  for (const std::string& text : options.axes) axes.push_back(read_axis(text));
+  std::vector<SweepPoint> points = points_of(axes);
+  const auto trajectory_of = [&](const SweepPoint& point) { return folder / point.name / "trajectory.h5"; };
+  Sweep sweep{read_scene(options.inputs.front(), options.set, trajectory_of(points.front())), std::move(axes), {}, {}};
   if (!options.quantities.empty()) sweep.asked = asked_of(options, sweep.scene.scene);
-  for (SweepPoint& point : points_of(sweep.axes)) {
+  for (SweepPoint& point : points) {
     stop_if_interrupted();
-    Settings settings = scene_at(options, sweep.axes, point);
-    const fs::path trajectory = folder / point.name / "trajectory.h5";
+    const fs::path trajectory = trajectory_of(point);
+    Settings settings = scene_at(options, sweep.axes, point, trajectory);
     sweep.runs.push_back({std::move(point), std::move(settings), trajectory});
   }
   check_distinct(options, sweep);

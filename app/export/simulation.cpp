@@ -87,6 +87,10 @@ SimulationReport simulate_new(const Settings& settings, const std::filesystem::p
       throw std::runtime_error(
           fmt::format("cannot make folder '{}': {}", path.parent_path().string(), error.message()));
   }
+  std::error_code missing;
+  if (const auto& from = settings.scene.start.from; from && std::filesystem::equivalent(*from, path, missing))
+    throw std::runtime_error(
+        fmt::format("'{}' would be replaced by the run that starts from it; give another -o", path.string()));
   return simulate(settings, path, false, false, 0, options, ready, span, ranks);
 }
 
@@ -143,7 +147,7 @@ void simulate_along(const Options& options, const sim::Ranks& ranks) {
   sim::SimulationOptions how;
   share(ranks, how);
   if (how.scene_text.empty()) return;
-  const Settings settings = parse_scene(how.scene_text, "the scene of the first rank", ".");
+  const Settings settings = parse_scene(how.scene_text, "the scene of the first rank", ".", {}, SceneUse::draw);
   sim::SimulationObserver observer;
   observer.should_stop = [] { return interrupted(); };
   set_threads(options, settings.scene, ranks);

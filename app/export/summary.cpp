@@ -86,6 +86,9 @@ std::string scene_summary(const Settings& settings) {
                       adapts ? fmt::format("steps of tolerance {}", sim::tolerance_of(scene.time))
                              : counted(intervals(scene.time.end, std::min(every, step)), "step"),
                       counted(states, "saved state"));
+  if (scene.start.from)
+    text += fmt::format("# starts in the state of '{}' at time {}\n", printable(*scene.start.from),
+                        scene.start.time.value_or(0));
   for (const sim::VesicleParameters& v : scene.vesicles)
     text += fmt::format("# vesicle: {}, order {}, viscosity contrast {}, bending modulus {}\n", v.shape,
                         v.order > 0 ? fmt::to_string(v.order) : std::string("auto"), v.viscosity_contrast,

@@ -4,6 +4,7 @@
 #include "app/base/printable.h"
 #include "app/scene/catalogues.h"
 #include "app/scene/scene_overrides.h"
+#include "app/scene/scene_start.h"
 #include "app/scene/scene_values.h"
 
 #include "render/core/ground.h"
@@ -200,6 +201,10 @@ struct Reader {
                 fmt::format("[{}, {}, {}] is no term [n, m, value] with whole n >= 0 and |m| <= n", term[0], term[1],
                             term[2]));
     if (use == SceneUse::draw) return;
+    if (starts_from_file()) {  // the shapes are those of its state, whatever has become of tables
+      if (p.shape == "file") p.file = std::filesystem::absolute(folder / p.file).lexically_normal().string();
+      return;
+    }
     if (p.shape == "file") {
       const std::filesystem::path path = std::filesystem::absolute(folder / p.file).lexically_normal();
       if (!std::filesystem::is_regular_file(path))
@@ -217,6 +222,35 @@ struct Reader {
       sim::initial_position(p);
     } catch (const std::exception& error) {
       fail_at(source_of(table, p.shape == "file" ? "file" : "shape"), error.what());
+    }
+  }
+
+  void check(const toml::table& table, sim::StartParameters& p) const {
+    if (!p.from) {
+      for (const char* key : {"time", "strain", "checksum"})
+        if (table.contains(key)) fail_at(source_of(table, key), fmt::format("'{}' is of a start 'from' a file", key));
+    } else if (p.from->empty()) {
+      fail_at(source_of(table, "from"), "'from' must be the name of a trajectory");
+    } else if (use == SceneUse::simulate) {
+      p.from = std::filesystem::absolute(folder / *p.from).lexically_normal().string();
+    }
+  }
+  bool starts_from_file() const { return root["start"]["from"].is_string(); }
+
+  /// What a start takes from its file; the state, where that was read.
+  std::optional<sim::State> resolve_start(sim::Scene& scene, const std::filesystem::path& continued) const {
+    const bool own_vesicles = root.contains("vesicle");
+    if (!own_vesicles && root.contains("placement"))
+      fail_at(root.get("placement")->source(),
+              "the vesicles are those of the file of the start: leave [[placement]] out, or give the [[vesicle]] that "
+              "it copies");
+    const auto scene_there = [](std::string_view text, const std::filesystem::path& path) {
+      return parse_scene(text, path.string() + " (its scene)", ".", {}, SceneUse::draw).scene;
+    };
+    try {
+      return take_start(scene, own_vesicles, continued, scene_there);
+    } catch (const WrongKey& wrong) {
+      fail_at(source_of(table_with(wrong.table, wrong.key), wrong.key), wrong.what());
     }
   }
 
@@ -343,7 +377,8 @@ struct Reader {
   template <class P>
   void operator()(const sim::Section& section, std::vector<P>& list) const {
     const toml::node* node = root.get(section.name);
-    if (!node && section.required)
+    const bool elsewhere = section.name == "vesicle" && starts_from_file();
+    if (!node && section.required && !elsewhere)
       throw std::runtime_error(fmt::format("{}: the table [[{}]] is missing", name, section.name));
     if (!node) return;
     if (const toml::table* table = node->as_table()) return read_table(section, *table, list.emplace_back());
@@ -379,7 +414,7 @@ std::string key_belongs_to(std::string_view section, std::string_view key, std::
 }
 
 Settings parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder,
-                     const std::vector<std::string>& overrides, SceneUse use) {
+                     const std::vector<std::string>& overrides, SceneUse use, const std::filesystem::path& continued) {
   toml::table root;
   try {
     root = parse_toml(text, name);
@@ -403,6 +438,8 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
                settings.scene.title);
   const Reader reader{root, name, folder, use};
   visit_sections(settings, reader);
+  std::optional<sim::State> start;
+  if (use == SceneUse::simulate && settings.scene.start.from) start = reader.resolve_start(settings.scene, continued);
   if (use == SceneUse::simulate) {
     reader.check_together(settings.scene);
     reader.check_names(settings);
@@ -422,11 +459,17 @@ Settings parse_scene(std::string_view text, const std::string& name, const std::
     } catch (const std::invalid_argument& error) {
       fail_at(root.get("placement")->source(), error.what());
     }
+  if (start) {
+    sim::Plans plans;
+    if (const auto objection = sim::start_objection(plans, settings.scene, *start))
+      fail_at(source_of(reader.table_with(objection->table, objection->key), objection->key), objection->reason);
+  }
   reader.check_copies(settings);
   return settings;
 }
 
-Settings read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+Settings read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+                    const std::filesystem::path& continued) {
   std::error_code error;
   if (!std::filesystem::exists(path, error))
     throw std::runtime_error(fmt::format("{}: there is no such scene file", path.string()));
@@ -437,7 +480,8 @@ Settings read_scene(const std::filesystem::path& path, const std::vector<std::st
     throw std::runtime_error(fmt::format("{}: is too large for a scene", path.string()));
   const std::string text = text_of(path);
   refuse_other_files(text, path);
-  return parse_scene(text, path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides);
+  return parse_scene(text, path.string(), path.has_parent_path() ? path.parent_path() : ".", overrides,
+                     SceneUse::simulate, continued);
 }
 
 }  // namespace app

@@ -132,6 +132,7 @@ struct Flattener {
 sim::Scene bare(sim::Scene scene) {
   scene.title.clear();
   for (sim::VesicleParameters& v : scene.vesicles) v.file.clear();  // its checksum counts, not where it lies
+  scene.start.from.reset();                                         // likewise, that of its state
   scene.numerics.threads = 0;
   return scene;
 }

@@ -52,16 +52,16 @@ void divided_for(const Division& division, int n, Body&& body) {
   divided_for(division, n, body, [](Parcel&, int) {});
 }
 
-/// Each rank's numbers, of its own items, for all.
-inline void share(const Division& division, std::vector<double>& by_item) {
+/// Each rank's numbers, of its own items, for all: one an item, or as many, side by side.
+inline void share(const Division& division, std::vector<double>& by_item, std::size_t of_each = 1) {
   if (division.whole()) return;
   std::vector<double> mine;
   for (std::size_t k = 0; k < by_item.size(); ++k)
-    if (division.mine(int(k))) mine.push_back(by_item[k]);
+    if (division.mine(int(k / of_each))) mine.push_back(by_item[k]);
   const auto all = division.ranks->gathered(mine);
   std::vector<std::size_t> next(all.size());
   for (std::size_t k = 0; k < by_item.size(); ++k) {
-    const auto owner = std::size_t(division.owner[k]);
+    const auto owner = std::size_t(division.owner[k / of_each]);
     by_item[k] = all[owner].at(next[owner]++);
   }
 }

@@ -531,6 +531,41 @@ void visit(P& p, V&& v) {
     p.file);
 }
 
+/// A saved state of another run, from which this one starts in place of the shapes of its vesicles.
+struct StartParameters {
+  std::optional<std::string> from;
+  std::optional<double> time;
+  std::optional<double> strain;
+  std::optional<std::string> checksum;
+};
+
+template <class P, class V>
+requires std::same_as<std::remove_const_t<P>, StartParameters>
+void visit(P& p, V&& v) {
+  v(Parameter{.name = "from",
+              .unit = "",
+              .meaning = "trajectory, beside the scene, in whose state the vesicles begin, at time 0 of this run",
+              .when_absent = "the vesicles have the shapes that their tables say",
+              .is_path = true},
+    p.from);
+  v(Parameter{.name = "time",
+              .unit = "time",
+              .meaning = "of a saved state of that trajectory",
+              .minimum = 0,
+              .when_absent = "its last state"},
+    p.time);
+  v(Parameter{.name = "strain",
+              .unit = "",
+              .meaning = "shear strain of the [cell] in that state, by less than half a cell either way",
+              .when_absent = "as the trajectory says: resolved scenes say it"},
+    p.strain);
+  v(Parameter{.name = "checksum",
+              .unit = "",
+              .meaning = "of that state; another one is refused",
+              .when_absent = "that of the state: resolved scenes say it"},
+    p.checksum);
+}
+
 /// The physical half of a scene file: everything that the simulation depends on.
 struct Scene {
   std::string title;
@@ -541,6 +576,7 @@ struct Scene {
   NumericsParameters numerics;
   BuoyancyParameters buoyancy;
   CellParameters cell;
+  StartParameters start;
 };
 
 /// A table of the scene file.
@@ -556,12 +592,13 @@ requires std::same_as<std::remove_const_t<S>, Scene>
 void visit_sections(S& scene, V&& v) {
   v(Section{"flow", "background flow; [[flow]] several times: their sum", true}, scene.flows);
   v(Section{"time", "duration and steps", true}, scene.time);
-  v(Section{"vesicle", "one table a vesicle", true}, scene.vesicles);
+  v(Section{"vesicle", "one table a vesicle; a start from a file may leave them to it", true}, scene.vesicles);
   v(Section{"placement", "many copies of the last vesicle; the resolved scene lists them one by one", false},
     scene.placements);
   v(Section{"numerics", "how accurately, and by which means", false}, scene.numerics);
   v(Section{"buoyancy", "sedimentation", false}, scene.buoyancy);
   v(Section{"cell", "periodic cell, of whose copies space is full", false}, scene.cell);
+  v(Section{"start", "a saved state of another run to start from", false}, scene.start);
 }
 
 }  // namespace sim

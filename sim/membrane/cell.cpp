@@ -48,7 +48,7 @@ double shear_strain(std::span<const FlowParameters> flows, double time) {
 CellSides cell_at(const Scene& scene, double time) {
   if (!scene.cell.size) return std::nullopt;
   const Vec3& size = *scene.cell.size;
-  const double lean = shear_strain(scene.flows, time) * size[2];
+  const double lean = (scene.start.strain.value_or(0) + shear_strain(scene.flows, time)) * size[2];
   Eigen::Matrix3d sides = size.asDiagonal();
   sides(0, 2) = lean - size[0] * std::round(lean / size[0]);
   return sides;

@@ -1,6 +1,6 @@
 // The periodic cell of a scene. Its sides are the columns of a lattice; copies of all that is in it stand at every sum
 // of whole numbers of sides. The background flow must take a lattice to a lattice, which uniform flows and a shear
-// along x do: with the strain gamma(t), the integral of the shear rate,
+// along x do: with the strain gamma(t), the integral of the shear rate and the strain of the start,
 //   a_1 = (L_x, 0, 0),   a_2 = (0, L_y, 0),   a_3 = (gamma L_z, 0, L_z)
 // (Lees and Edwards). a_3 may be changed by whole numbers of a_1, so that it leans by no more than half of L_x. The
 // velocity less the background flow is the same in all copies.

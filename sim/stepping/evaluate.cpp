@@ -57,6 +57,13 @@ int points_between(const Dynamics& before) { return before.control.order + 2; }
 
 }  // namespace
 
+void transfer(Parcel& parcel, State& state) {
+  std::size_t count = state.vesicles.size();
+  parcel(state.step), parcel(state.time), parcel(count);
+  state.vesicles.resize(count);
+  for (VesicleState& v : state.vesicles) transfer(parcel, v);
+}
+
 Attempt<Correction> correction_of(const Model& s, const VesicleDynamics& v, const Coefficients& x, const Geometry& g) {
   const AreaVolume size{v.area, v.volume};
   Correction c = is_sphere(size) ? volume_correction(s.plans, x, g, v.area, v.volume)

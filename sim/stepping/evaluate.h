@@ -13,6 +13,9 @@ Geometry measured_geometry(Plans&, const Coefficients& position);
 /// is none, or a long one.
 Attempt<Correction> correction_of(const Model&, const VesicleDynamics&, const Coefficients& position, const Geometry&);
 
+/// A saved state, between ranks.
+void transfer(Parcel&, State&);
+
 /// Velocity and tension that solve (3a)-(3b) at the present positions, and all else that is saved.
 Attempt<State> evaluate(const Model&, const Dynamics&);
 /// States between two successive ones, or at the later: by the polynomials in time of the step that led from one to

@@ -199,8 +199,8 @@ Attempt<Dynamics> in_orders(const Model& s, const Dynamics& d, std::span<const i
   return changed;
 }
 
-Dynamics resolved_start(const Model& s) {
-  Dynamics d = initial_dynamics(s);
+Dynamics resolved_start(const Model& s, const State* from) {
+  Dynamics d = initial_dynamics(s, {}, from);
   if (!any_follows(s.scene)) return d;
   for (;;) {
     Dynamics moving = d;
@@ -216,7 +216,7 @@ Dynamics resolved_start(const Model& s) {
     bool higher = false;
     for (std::size_t k = 0; k < orders.size(); ++k) higher = higher || orders[k] > d.vesicles[k].position.order;
     if (!higher) return d;
-    d = initial_dynamics(s, orders);
+    d = initial_dynamics(s, orders, from);
   }
 }
 

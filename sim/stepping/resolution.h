@@ -45,7 +45,7 @@ std::vector<int> orders_for(const Model&, const Dynamics& before, double dt, std
 /// volume.
 Attempt<Dynamics> in_orders(const Model&, const Dynamics&, std::span<const int> orders);
 
-/// The start of a run, with orders that suit its first step.
-Dynamics resolved_start(const Model&);
+/// The start of a run, perhaps in a state of another, with orders that suit its first step.
+Dynamics resolved_start(const Model&, const State* from = nullptr);
 
 }  // namespace sim

@@ -1,5 +1,7 @@
 #include "sim/stepping/simulate.h"
 
+#include "sim/stepping/saved_start.h"
+
 #include <fmt/format.h>
 
 #include <chrono>
@@ -168,6 +170,15 @@ class ResumeClock {
   std::chrono::steady_clock::time_point last_{};
 };
 
+std::vector<std::string> starting_warnings(const Model& s, const Dynamics& d, const std::optional<State>& from) {
+  std::vector<std::string> warnings = scene_warnings(s, d);
+  if (from) {
+    const std::string cut = cut_warning(s.scene, *from, positions(d));
+    if (!cut.empty()) warnings.push_back(cut);
+  }
+  return warnings;
+}
+
 /// A run under way: the present state, its file, and what of it is not in the file yet.
 class Run {
  public:
@@ -234,8 +245,10 @@ class Run {
  private:
   /// From the scene: the file gets its first state.
   void begin() {
-    d_ = resolved_start(model_);
-    const TrajectoryHeader header{options_.scene_text, options_.program, options_.build, scene_warnings(model_, d_)};
+    const std::optional<State> from = start_state(scene_, model_.ranks);
+    d_ = resolved_start(model_, from ? &*from : nullptr);
+    const TrajectoryHeader header{options_.scene_text, options_.program, options_.build,
+                                  starting_warnings(model_, d_, from)};
     if (observer_.on_warning)
       for (const std::string& warning : header.warnings) observer_.on_warning(warning);
     for (std::size_t k = 0; k < d_.vesicles.size(); ++k) d_.vesicles[k].warned = unresolved(model_, d_, k);
@@ -406,8 +419,9 @@ Dynamics resume_point(const TrajectoryReader& file, const std::filesystem::path&
 Preview preview(const Scene& scene) {
   Plans plans;
   const Model model = make_model(scene, plans);
-  const Dynamics d = resolved_start(model);
-  return {evaluate(model, d).value(), scene_warnings(model, d)};
+  const std::optional<State> from = start_state(scene, model.ranks);
+  const Dynamics d = resolved_start(model, from ? &*from : nullptr);
+  return {evaluate(model, d).value(), starting_warnings(model, d, from)};
 }
 
 }  // namespace sim

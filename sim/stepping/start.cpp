@@ -3,6 +3,9 @@
 #include "sim/measures/diagnostics.h"
 #include "sim/membrane/cell.h"
 #include "sim/sphere/norms.h"
+#include "sim/stepping/contrasts.h"
+#include "sim/stepping/saved_start.h"
+#include "sim/surface/correction.h"
 #include "sim/surface/dealias.h"
 #include "sim/surface/shapes.h"
 #include "sim/suspension/gap.h"
@@ -173,6 +176,35 @@ void start_steps(const Model& s, Dynamics& d) {
 
 namespace {
 
+/// A vesicle of another run in an order of this one. What a lower order cuts off changes area and volume, which are
+/// restored.
+Coefficients taken_position(const Model& s, std::size_t vesicle, const Coefficients& from, int order) {
+  const VesicleParameters& v = s.scene.vesicles[vesicle];
+  const NumericsParameters& n = s.scene.numerics;
+  if (order == 0) order = v.order;
+  if (order == 0)
+    order = order_follows(s.scene.time, v) ? std::clamp(from.order, n.least_order, n.most_order) : fixed_order;
+  Coefficients x = resized(from, order);
+  if (order >= from.order) return x;
+  if (const double lost = cut_off(from, order); !(lost <= most_cut_off)) {
+    int enough = order;
+    while (!(cut_off(from, enough) <= most_cut_off)) ++enough;
+    throw std::invalid_argument(fmt::format(
+        "order {} would cut off {:.2g} of its radius from the shape of vesicle {} in '{}', of order {}; give "
+        "an order of at least {}",
+        order, lost, vesicle, s.scene.start.from.value_or(""), from.order, enough));
+  }
+  const Measures before = measures(measured_geometry(s.plans, from));
+  if (!n.correction || is_sphere({before.area, before.volume})) return x;
+  const Correction c = area_volume_correction(s.plans, x, before.area, before.volume);
+  if (!c.converged)
+    throw std::invalid_argument(
+        fmt::format("in order {} vesicle {} of '{}' cannot keep its area and volume; give a higher order", order,
+                    vesicle, s.scene.start.from.value_or("")));
+  x.values += c.shift.values;
+  return x;
+}
+
 Coefficients starting_position(const Scene& scene, VesicleParameters v, int order) {
   if (order > 0) v.order = order;
   if (v.order == 0 && !order_follows(scene.time, v)) v.order = fixed_order;
@@ -205,18 +237,28 @@ void check_cell(const Model& s, const Dynamics& d) {
 
 }  // namespace
 
-Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
+Dynamics initial_dynamics(const Model& s, std::span<const int> orders, const State* from) {
   if (s.scene.vesicles.empty()) throw std::invalid_argument("the scene has no vesicle");
+  if (from)
+    if (const auto objection = start_objection(s.plans, s.scene, *from)) throw std::invalid_argument(objection->reason);
   Dynamics d;
   for (const VesicleParameters& parameters : s.scene.vesicles) {
     VesicleDynamics v;
-    v.position = starting_position(s.scene, parameters, orders.empty() ? 0 : orders[d.vesicles.size()]);
+    const std::size_t k = d.vesicles.size();
+    const int order = orders.empty() ? 0 : orders[k];
+    v.position =
+        from ? taken_position(s, k, from->vesicles[k].position, order) : starting_position(s.scene, parameters, order);
     const int p = v.position.order;
     if (const Measures given = measures(measured_geometry(s.plans, v.position)); is_sphere({given.area, given.volume}))
       make_round(v.position, given.volume);
     const int label_order = s.scene.numerics.label_order;
     v.labels = fresh_labels(label_order > 0 ? label_order : automatic_label_order(p));
     v.tracers = tracer_directions();
+    if (from) {  // the same material as there
+      const Coefficients& labels = from->vesicles[k].labels;
+      v.labels = resized(labels, label_order > 0 ? label_order : std::max(labels.order, automatic_label_order(p)));
+      v.tracers = from->vesicles[k].tracers;
+    }
     v.saved_position = v.position;
     visit(v, [&]<class Member>(Part part, Member& member) {  // fields that nothing is known of yet
       if constexpr (std::is_same_v<Member, Coefficients>)
@@ -234,6 +276,7 @@ Dynamics initial_dynamics(const Model& s, std::span<const int> orders) {
   }
   check_cell(s, d);
   check_magnitudes(s, d);
+  check_contrasts(s, d);
   const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, 0), s.ranks);
   if (gap.crossing) throw std::invalid_argument(pair_name(gap) + " overlap");
   if (gap.distance < gap_floor(s, d))

@@ -18,9 +18,10 @@ inline constexpr std::int64_t calm_enough = 8;
 /// Degree of the material labels of a vesicle where none is given.
 inline int automatic_label_order(int order) { return std::max(2 * order, 24); }
 
-/// Initial state, in the orders of the scene, or in others; an automatic order is that which the shape needs. Throws
+/// Initial state, in the orders of the scene, or in others; an automatic order is that which the shape needs. With a
+/// state of another run, the vesicles are in it: their surfaces and labels in the orders of this run. Throws
 /// std::invalid_argument with one sentence when a vesicle cannot be made.
-Dynamics initial_dynamics(const Model&, std::span<const int> orders = {});
+Dynamics initial_dynamics(const Model&, std::span<const int> orders = {}, const State* from = nullptr);
 
 /// Step of a scheme of fixed steps, and the longest it takes: a twentieth of a period where a flow oscillates.
 double fixed_step(const Scene&);

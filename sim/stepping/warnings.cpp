@@ -2,6 +2,7 @@
 
 #include "sim/core/digits.h"
 #include "sim/membrane/cell.h"
+#include "sim/stepping/contrasts.h"
 #include "sim/suspension/gap.h"
 
 #include <fmt/format.h>
@@ -136,6 +137,7 @@ std::vector<std::string> scene_warnings(const Model& s, const Dynamics& d) {
                       step / (20 * longest), step, longest));
   for (std::size_t k = 0; k < d.vesicles.size(); ++k)
     if (unresolved(s, d, k)) warnings.push_back(resolution_warning(s, d, k));
+  if (std::string warning = contrast_warning(s, d); !warning.empty()) warnings.push_back(std::move(warning));
   if (const auto films = thin_films(s, d); !films.empty())
     warnings.push_back(film_warning(d, films.front(), films.size() - 1));
   return warnings;

@@ -161,20 +161,22 @@ Vector join(const std::vector<Vector>& parts) {
   return y;
 }
 
-/// Of all ranks' unknowns: one number a vesicle, added in the order of the vesicles, so that the bits of the sum do not
-/// depend on who has which.
-double product_of_parts(std::span<const Block> blocks, const Division& division, const Vector& a, const Vector& b) {
-  std::vector<double> products(blocks.size());
+/// Of all ranks' unknowns: a number a vesicle and pair, added in the order of the vesicles, so that the bits of the sum
+/// do not depend on who has which.
+Vector products_of_parts(std::span<const Block> blocks, const Division& division, std::span<const Matrix> vectors,
+                         int count, const Vector& with) {
+  const auto each = std::size_t(count);
+  std::vector<double> products(blocks.size() * each);
   Eigen::Index at = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const Eigen::Index size = blocks[i].size;
-    products[i] = a.segment(at, size).dot(b.segment(at, size));
-    at += size;
+    if (!division.mine(int(i))) continue;
+    Vector::Map(&products[i * each], count) = products_of_rows(vectors, count, with, at, blocks[i].size);
+    at += blocks[i].size;
   }
-  share(division, products);
-  double sum = 0;
-  for (const double product : products) sum += product;
-  return sum;
+  share(division, products, each);
+  Vector sums = Vector::Zero(count);
+  for (std::size_t i = 0; i < blocks.size(); ++i) sums += Vector::Map(&products[i * each], count);
+  return sums;
 }
 
 /// Left-hand side of the coupled system.
@@ -230,10 +232,12 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
   };
   divided_for(s.division, n, prepare);
   constexpr int most_iterations = 300;
-  const GmresResult result = gmres(
-      [&](const Vector& y) { return apply_blocks(blocks, s.interaction, s.division, y); },
-      [&](const Vector& y) { return precondition_blocks(blocks, s.division, y); }, join(right), join(start), tolerance,
-      most_iterations, [&](const Vector& a, const Vector& b) { return product_of_parts(blocks, s.division, a, b); });
+  const GmresResult result = gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, s.division, y); },
+                                   [&](const Vector& y) { return precondition_blocks(blocks, s.division, y); },
+                                   join(right), join(start), tolerance, most_iterations,
+                                   [&](std::span<const Matrix> vectors, int count, const Vector& with) {
+                                     return products_of_parts(blocks, s.division, vectors, count, with);
+                                   });
   SuspensionSolve solve{std::vector<Motion>(n), result.iterations, result.residual, result.converged};
   const std::vector<Vector> parts = split(blocks, result.solution);
   for (int i = 0; i < n; ++i) {
