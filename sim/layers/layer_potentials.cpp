@@ -157,13 +157,13 @@ struct RowSums {
 Coefficients LayerMatrix::apply(const Coefficients& density) const {
   const int nc = coefficient_count(order), given = coefficient_count(std::min(order, density.order));
   Coefficients out{order, Matrix(nc, 3)};
-  RawVector<double> fields(std::size_t(3) * stride);  // padded with zeros like the blocks
+  const Scratch<double, 2048> fields(std::size_t(3) * stride);  // padded with zeros like the blocks
   for (int d = 0; d < 3; ++d) {
-    double* to = fields.data() + std::ptrdiff_t(d) * stride;
+    double* to = fields.get() + std::ptrdiff_t(d) * stride;
     std::copy_n(density.values.col(d).data(), given, to);
     std::fill(to + given, to + stride, 0.0);
   }
-  const double *fx = fields.data(), *fy = fx + stride, *fz = fy + stride;
+  const double *fx = fields.get(), *fy = fx + stride, *fz = fy + stride;
   const std::ptrdiff_t length = std::ptrdiff_t(6) * stride;
   int row = 0;
   for (; row + 2 <= nc; row += 2) {  // two at once, whose sums do not wait for each other

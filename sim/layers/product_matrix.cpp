@@ -54,34 +54,45 @@ LayerMatrix product_matrix(const Basis& basis, const Matrix& tensor) {
   matrix.values.resize(std::size_t(nc) * row);
   for (int r = 0; r < nc * blocks; ++r)
     std::fill_n(matrix.values.begin() + std::ptrdiff_t(r) * matrix.stride + nc, matrix.stride - nc, 0.0);
-  // What (cos, cos), (sin, sin), (sin, cos) and (cos, sin) of m and m' make of the components, latitude by latitude.
+  // What (cos, cos), (sin, sin), (sin, cos) and (cos, sin) of m and m' make of the components, latitude by latitude of
+  // the northern half: the sum with that of the mirrored latitude, and the difference. Y_a Y_b is even or odd in z.
   constexpr int kinds = 4, numbers = kinds * blocks;
   static_assert(numbers == 6 * lanes);
   constexpr int sign[kinds] = {1, -1, -1, 1}, other_sign[kinds] = {1, -1, 1, -1};
-  const LaneBuffer longitude(std::size_t(nlat) * numbers / lanes);
-  double* const at_latitude = reinterpret_cast<double*>(longitude.get());
+  const int half = (nlat + 1) / 2;
+  const LaneBuffer longitude[2] = {LaneBuffer(std::size_t(half) * numbers / lanes),
+                                   LaneBuffer(std::size_t(half) * numbers / lanes)};
+  const Vector& weights = basis.weights();
   for (int m = 0; m <= p; ++m)
     for (int o = 0; o <= m; ++o) {
       const double norm = (m == 0 ? 1 : std::numbers::sqrt2) * (o == 0 ? 1 : std::numbers::sqrt2) / (4 * pi);
-      for (int d = 0; d < blocks; ++d)
-        for (int i = 0; i < nlat; ++i) {
-          const double weight = norm * basis.weights()[i];
-          const double c = sums.cosine[d](i, m - o), c_sum = sums.cosine[d](i, m + o);
-          const double s = sums.sine[d](i, m - o), s_sum = sums.sine[d](i, m + o);
-          double* const to = at_latitude + i * numbers + d;
-          to[0] = weight * (c + c_sum);
-          to[blocks] = weight * (c - c_sum);
-          to[2 * blocks] = weight * (s_sum + s);
-          to[3 * blocks] = weight * (s_sum - s);
+      for (int i = 0; i < half; ++i) {
+        const int mirror = nlat - 1 - i;
+        double* const even = reinterpret_cast<double*>(longitude[0].get()) + std::ptrdiff_t(i) * numbers;
+        double* const odd = reinterpret_cast<double*>(longitude[1].get()) + std::ptrdiff_t(i) * numbers;
+        for (int d = 0; d < blocks; ++d) {
+          const auto products = [&](int latitude) {
+            const double c = sums.cosine[d](latitude, m - o), c_sum = sums.cosine[d](latitude, m + o);
+            const double s = sums.sine[d](latitude, m - o), s_sum = sums.sine[d](latitude, m + o);
+            return Eigen::Vector4d(c + c_sum, c - c_sum, s_sum + s, s_sum - s);
+          };
+          const Eigen::Vector4d here = norm * weights[i] * products(i);
+          const Eigen::Vector4d there =
+              mirror == i ? Eigen::Vector4d::Zero() : Eigen::Vector4d(norm * weights[mirror] * products(mirror));
+          for (int kind = 0; kind < kinds; ++kind) {
+            even[kind * blocks + d] = here[kind] + there[kind];
+            odd[kind * blocks + d] = here[kind] - there[kind];
+          }
         }
+      }
       const int used = o > 0 ? kinds : m > 0 ? 3 : 1;  // no sine has m = 0
       for (int l = m; l <= p; ++l)
         for (int n = o; n <= p; ++n) {
           const double* f = functions.col(legendre_index(p, l, m)).data();
           const double* g = functions.col(legendre_index(p, n, o)).data();
           Pack<3> first, second;
-          const Lane* here = longitude.get();
-          for (int i = 0; i < nlat; ++i, here += numbers / lanes) {
+          const Lane* here = longitude[(l + m + n + o) % 2].get();
+          for (int i = 0; i < half; ++i, here += numbers / lanes) {
             const double both = f[i] * g[i];
             first.add(both, here);
             second.add(both, here + 3);
