@@ -12,12 +12,12 @@ constexpr int lanes = 4;
 using Lane = double __attribute__((vector_size(lanes * sizeof(double))));
 
 /// Twice as many, for code that is compiled for AVX-512 beside the instruction set of the rest and run where
-/// has_wide_lanes().
+/// has_wide_lanes(): never where the rest cannot multiply and add at once, as this code does and rounds differently.
 using WideLane = double __attribute__((vector_size(2 * lanes * sizeof(double))));
 template <class Vector>
 constexpr int width_of = int(sizeof(Vector) / sizeof(double));
 
-#if defined(__x86_64__)
+#if defined(__x86_64__) && defined(__FMA__)
 #if defined(__clang__)
 #define TANKTREAD_WIDE [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,avx512cd")]]
 #else  // takes half the width where it may choose, unless told
