@@ -1,6 +1,7 @@
 #include "app/scene/scene_values.h"
 
 #include "app/scene/catalogues.h"
+#include "sim/core/checksum.h"
 
 #include <fmt/format.h>
 
@@ -195,9 +196,9 @@ void read_value(const sim::Parameter& p, const toml::node& node, render::FieldRa
 }
 
 std::string checksum(std::string_view bytes) {
-  std::uint64_t h = 14695981039346656037ull;
-  for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  return fmt::format("{:016x}", h);
+  sim::Checksum sum;
+  sum.add(bytes);
+  return sum.text();
 }
 
 }  // namespace app

@@ -47,7 +47,7 @@ TANKTREAD_WIDE [[gnu::noinline]] void run_with_wide_lanes(const Step& step) {
 }
 template <class Vector, class Step>
 void run_apart(const Step& step) {
-  if constexpr (width_of < Vector >> lanes)
+  if constexpr (lanes < width_of<Vector>)
     run_with_wide_lanes(step);
   else
     run_with_lanes(step);

@@ -20,10 +20,6 @@ struct SpectrumRows {
   explicit SpectrumRows(const FoldedGrid&);
 };
 
-/// Contribution of a sample of the four members of an orbit to the blocks cos even, cos odd, sin even, sin odd:
-/// [block][member], members f, -f, pi - f, pi + f.
-constexpr double fold_sign[4][4] = {{1, 1, 1, 1}, {1, 1, -1, -1}, {1, -1, -1, 1}, {1, -1, 1, -1}};
-
 /// Adds 12 components of one sample to the eight folded sums it belongs to. Latitude parity: even sum and odd
 /// difference. samples: [2 latitudes][4 members][12], zero where there is none; folded: [parity][block] strided by
 /// `stride`.

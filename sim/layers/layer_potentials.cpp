@@ -15,7 +15,7 @@ using std::numbers::pi;
 }  // namespace
 
 /// Projection of rows on the target harmonics, a block of columns after the other: 12 vectors, 48 or 96 columns. With
-/// the memory of a thread; of_four and of_eight differ in the instruction set.
+/// the memory of a thread.
 template <class Vector>
 struct LayerPotentials::Plan::Columns {
   const Plan& plan;

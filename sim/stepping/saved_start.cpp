@@ -1,6 +1,8 @@
 #include "sim/stepping/saved_start.h"
 
+#include "sim/core/checksum.h"
 #include "sim/measures/diagnostics.h"
+#include "sim/sphere/norms.h"
 #include "sim/stepping/evaluate.h"
 #include "sim/surface/shapes.h"
 #include "sim/trajectory/trajectory.h"
@@ -28,10 +30,6 @@ std::int64_t state_at_time(const TrajectoryReader& file, const std::string& path
                                        nearest.find(' ') == std::string::npos ? "is at" : "are at", nearest));
 }
 
-double mean_radius(const Coefficients& x) {
-  return std::sqrt(x.values.bottomRows(x.values.rows() - 1).squaredNorm() / (4 * std::numbers::pi));
-}
-
 /// Of the shape that a scene gives a vesicle; 0: it does not say.
 struct GivenSize {
   double area = 0, volume = 0;
@@ -53,15 +51,11 @@ GivenSize size_in_scene(Plans& plans, VesicleParameters v, int order) {
 }  // namespace
 
 std::string state_checksum(const State& state) {
-  std::uint64_t h = 14695981039346656037ull;  // FNV-1a
-  const auto add = [&h](const void* bytes, std::size_t count) {
-    for (const auto *b = static_cast<const unsigned char*>(bytes), *end = b + count; b != end; ++b)
-      h = (h ^ *b) * 1099511628211ull;
-  };
+  Checksum sum;
   for (const VesicleState& v : state.vesicles)
     for (const Matrix* m : {&v.position.values, &v.labels.values, &v.tracers})
-      add(m->data(), std::size_t(m->size()) * sizeof(double));
-  return fmt::format("{:016x}", h);
+      sum.add({reinterpret_cast<const char*>(m->data()), std::size_t(m->size()) * sizeof(double)});
+  return sum.text();
 }
 
 SavedStart read_start(const StartParameters& start) {
@@ -121,11 +115,7 @@ std::optional<SceneObjection> start_objection(Plans& plans, const Scene& scene, 
   return std::nullopt;
 }
 
-double cut_off(const Coefficients& x, int order) {
-  if (order >= x.order) return 0;
-  const Eigen::Index lost = x.values.rows() - coefficient_count(order);
-  return std::sqrt(x.values.bottomRows(lost).squaredNorm() / (4 * std::numbers::pi)) / mean_radius(x);
-}
+double cut_off(const Coefficients& x, int order) { return tail_share(x, order + 1); }
 
 std::string cut_warning(const Scene& scene, const State& from, std::span<const Coefficients> positions) {
   constexpr double worth_a_word = 1e-8;
