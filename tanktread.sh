@@ -10,7 +10,7 @@ root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 build=$root/build/release
 
 # What the program needs. Where names are joined by '|', the first that the system offers is enough.
-packages=(g++ cmake ninja-build 'pkgconf|pkg-config' libeigen3-dev libfftw3-dev libhdf5-dev libfmt-dev zlib1g-dev
+packages=(g++ cmake ninja-build 'pkgconf|pkg-config' libeigen3-dev libfftw3-dev libtbb-dev libhdf5-dev libfmt-dev zlib1g-dev
           libtomlplusplus-dev libcli11-dev
           libglm-dev libpng-dev libcairo2-dev libfreetype-dev libfontconfig-dev libgl-dev libegl-dev fonts-dejavu-core
           fonts-dejavu-extra

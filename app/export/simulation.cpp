@@ -8,11 +8,11 @@
 #include "app/scene/scene_text.h"
 #include "app/scene/trajectory_scene.h"
 
+#include "sim/core/parallel.h"
 #include "sim/core/result_file.h"
 #include "sim/stepping/simulate.h"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -29,12 +29,15 @@ void share(const sim::Ranks& ranks, sim::SimulationOptions& how) {
   });
 }
 
-void set_threads(const Options& options, const sim::Scene& scene, const sim::Ranks& ranks) {
-  int threads = options.jobs > 0 ? options.jobs : scene.numerics.threads;
-  if (threads <= 0 && ranks.neighbours > 1 && !std::getenv("OMP_NUM_THREADS"))
-    threads = std::max(
-        1, std::min(omp_get_num_procs(), static_cast<int>(std::thread::hardware_concurrency()) / ranks.neighbours));
-  if (threads > 0) omp_set_num_threads(threads);
+/// Of this process; 0: one for each processor.
+int threads_of(const Options& options, const sim::Scene& scene, const sim::Ranks& ranks) {
+  if (options.jobs > 0) return options.jobs;
+  if (scene.numerics.threads > 0) return scene.numerics.threads;
+  if (const char* const asked = std::getenv("OMP_NUM_THREADS"))
+    if (const int threads = std::atoi(asked); threads > 0) return threads;
+  if (ranks.neighbours == 1) return 0;
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  return std::clamp(processors / ranks.neighbours, 1, sim::thread_count());
 }
 
 SimulationReport simulate(const Settings& settings, const std::filesystem::path& path, bool resume, bool another_time,
@@ -64,8 +67,8 @@ SimulationReport simulate(const Settings& settings, const std::filesystem::path&
   };
   observer.on_ready = ready;
   observer.should_stop = [] { return interrupted(); };
-  set_threads(options, scene, ranks);
-  const sim::SimulationOutcome outcome = sim::simulate(scene, how, observer, ranks);
+  sim::SimulationOutcome outcome;
+  sim::with_threads(threads_of(options, scene, ranks), [&] { outcome = sim::simulate(scene, how, observer, ranks); });
 
   SimulationReport report;
   const sim::TrajectoryReader reader(path);
@@ -150,8 +153,8 @@ void simulate_along(const Options& options, const sim::Ranks& ranks) {
   const Settings settings = parse_scene(how.scene_text, "the scene of the first rank", ".", {}, SceneUse::draw);
   sim::SimulationObserver observer;
   observer.should_stop = [] { return interrupted(); };
-  set_threads(options, settings.scene, ranks);
-  sim::simulate(settings.scene, how, observer, ranks);
+  sim::with_threads(threads_of(options, settings.scene, ranks),
+                    [&] { sim::simulate(settings.scene, how, observer, ranks); });
 }
 
 }  // namespace app

@@ -6,12 +6,12 @@
 #include "app/scene/scene_text.h"
 #include "app/validate/base_scenes.h"
 
+#include "sim/core/parallel.h"
 #include "sim/measures/motion.h"
 #include "sim/sphere/basis.h"
 #include "sim/stepping/simulate.h"
 
 #include <fmt/format.h>
-#include <omp.h>
 #include <stdlib.h>
 
 #include <algorithm>
@@ -75,9 +75,9 @@ Trial Trials::attempt(std::string_view name, const Changes& changes) {
     show_(fmt::format("run {}, t = {:.4g} of {:.4g}", count_, record.time, settings.scene.time.end));
   };
   observer.should_stop = [] { return interrupted(); };
-  omp_set_num_threads(threads_);
   const std::clock_t start = std::clock();
-  const sim::SimulationOutcome outcome = sim::simulate(settings.scene, how, observer);
+  sim::SimulationOutcome outcome;
+  sim::with_threads(threads_, [&] { outcome = sim::simulate(settings.scene, how, observer); });
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   if (outcome.end == sim::SimulationEnd::interrupted) throw Interrupted{};
   Trial trial{settings, sim::TrajectoryReader(how.trajectory), seconds, {}};

@@ -1,10 +1,12 @@
 #include "sim/layers/layer_potentials.h"
 
+#include "sim/core/parallel.h"
 #include "sim/layers/layer_plan.h"
 
 #include <algorithm>
 #include <numbers>
 #include <stdexcept>
+#include <type_traits>
 
 namespace sim {
 
@@ -100,16 +102,15 @@ LayerMatrices LayerPotentials::Plan::project(const RawVector<double>& rows, bool
     m->stride = stride;
     m->values.resize(std::size_t(nc) * 6 * stride);
   }
-#pragma omp parallel
-  if (wide) {
-    Columns<WideLane> columns(*this);
-#pragma omp for schedule(static)
-    for (int block = 0; block < columns.blocks(row_length); ++block) columns.of_block(block, rows, row_length, result);
-  } else {
-    Columns<Lane> columns(*this);
-#pragma omp for schedule(static)
-    for (int block = 0; block < columns.blocks(row_length); ++block) columns.of_block(block, rows, row_length, result);
-  }
+  const auto of_width = [&]<class Vector>(std::type_identity<Vector>) {
+    parallel_for_with(
+        Columns<Vector>::blocks(row_length), [&] { return Columns<Vector>(*this); },
+        [&](Columns<Vector>& columns, int block) { columns.of_block(block, rows, row_length, result); });
+  };
+  if (wide)
+    of_width(std::type_identity<WideLane>{});
+  else
+    of_width(std::type_identity<Lane>{});
   return result;
 }
 
@@ -165,8 +166,8 @@ Coefficients LayerMatrix::apply(const Coefficients& density) const {
   }
   const double *fx = fields.get(), *fy = fx + stride, *fz = fy + stride;
   const std::ptrdiff_t length = std::ptrdiff_t(6) * stride;
-  int row = 0;
-  for (; row + 2 <= nc; row += 2) {  // two at once, whose sums do not wait for each other
+  const auto two_rows = [&](int pair) {  // at once, whose sums do not wait for each other
+    const int row = 2 * pair;
     const double* block = values.data() + row * length;
     RowSums a, b;
     for (int k = 0; k < stride; k += lanes) {
@@ -176,12 +177,13 @@ Coefficients LayerMatrix::apply(const Coefficients& density) const {
     }
     a.write(out.values, row);
     b.write(out.values, row + 1);
-  }
-  if (row < nc) {
+  };
+  shared_for(nc / 2, 9.0 * nc * stride, two_rows);
+  if (nc % 2 == 1) {
     RowSums a;
     for (int k = 0; k < stride; k += lanes)
-      a.add(values.data() + row * length + k, stride, load_lane(fx + k), load_lane(fy + k), load_lane(fz + k));
-    a.write(out.values, row);
+      a.add(values.data() + (nc - 1) * length + k, stride, load_lane(fx + k), load_lane(fy + k), load_lane(fz + k));
+    a.write(out.values, nc - 1);
   }
   return out;
 }

@@ -1,5 +1,6 @@
 #include "sim/layers/layer_plan.h"
 
+#include "sim/core/parallel.h"
 #include "sim/layers/kernels.h"
 
 #include <algorithm>
@@ -312,19 +313,22 @@ struct LayerPotentials::Plan::Rows {
 RawVector<double> LayerPotentials::Plan::rows_of(const Coefficients& x, bool with_double) const {
   const int used = with_double ? components : components / 2;
   RawVector<double> rows(std::size_t(target.nlat) * target.nlon * used * column_stride());
-#pragma omp parallel
-  {
+  struct Scratch {
     std::optional<Rows<WideLane>> eight;
-    if (wide) eight.emplace(*this);
-    Rows<Lane> four(*this);
-#pragma omp for schedule(dynamic)
-    for (std::size_t k = 0; k < tiles.size(); ++k) {
-      if (tiles[k].wide)
-        eight->of_tile(tiles[k], x, with_double, rows.data());
-      else
-        four.of_tile(tiles[k], x, with_double, rows.data());
-    }
-  }
+    Rows<Lane> four;
+  };
+  const auto scratch = [&] {
+    Scratch made{{}, Rows<Lane>(*this)};
+    if (wide) made.eight.emplace(*this);
+    return made;
+  };
+  parallel_for_with(int(tiles.size()), scratch, [&](Scratch& mine, int k) {
+    const auto& tile = tiles[std::size_t(k)];
+    if (tile.wide)
+      mine.eight->of_tile(tile, x, with_double, rows.data());
+    else
+      mine.four.of_tile(tile, x, with_double, rows.data());
+  });
   return rows;
 }
 

@@ -1,5 +1,6 @@
 #include "sim/sphere/grid_transform.h"
 
+#include "sim/core/parallel.h"
 #include "sim/sphere/fourier_sums.h"
 
 #include <algorithm>
@@ -55,6 +56,16 @@ void in_threes(int count, F&& f) {
   if (count - at == 2) f(std::integral_constant<int, 2>{}, at);
   if (count - at == 1) f(std::integral_constant<int, 1>{}, at);
 }
+
+/// One of these calls.
+template <class F>
+void in_three(int count, int call, F&& f) {
+  const int at = 3 * call, rest = count - at;
+  if (rest >= 3) return f(std::integral_constant<int, 3>{}, at);
+  if (rest == 2) return f(std::integral_constant<int, 2>{}, at);
+  f(std::integral_constant<int, 1>{}, at);
+}
+int threes(int count) { return (count + 2) / 3; }
 
 /// ... 4, 4, ... and the rest.
 template <class F>
@@ -243,9 +254,9 @@ void GridTransform::along_latitudes(const double* coefficients, int degree, int 
                                     Lane* spectrum) const {
   const Eigen::Index count = coefficient_count(degree);
   const std::ptrdiff_t row = std::ptrdiff_t(range.count()) * fields * lanes_;
-  const Scratch<double, 1024> gathered(std::size_t(degree + 1) * 2 * fields);
-  const Scratch<Lane*, 64> out(std::size_t(2) * fields);
-  for (int m = 0; m <= degree; ++m) {
+  shared_for(degree + 1, 2.0 * lanes * count * fields * range.count() * made_, [&](int m) {
+    const Scratch<double, 1024> gathered(std::size_t(degree + 1) * 2 * fields);
+    const Scratch<Lane*, 64> out(std::size_t(2) * fields);
     const int depth = degree - m + 1, rows = (m == 0 ? 1 : 2) * fields;
     for (int r = 0; r < rows; ++r) {
       const int field = r % fields, sign = r < fields ? 1 : -1;
@@ -265,15 +276,20 @@ void GridTransform::along_latitudes(const double* coefficients, int degree, int 
         });
       });
     }
-  }
+  });
 }
 
 void GridTransform::around(const Lane* spectrum, int degree, int fields, TableRange made, const Wanted& wanted) const {
   const std::ptrdiff_t row = std::ptrdiff_t(made.count()) * fields * lanes_;
-  for (int d = 0; d < 3; ++d) {
+  const auto vectors = [&](int d) { return wanted.tables[d].count() * fields * lanes_; };
+  const int all = vectors(0) + vectors(1) + vectors(2),
+            calls = threes(vectors(0)) + threes(vectors(1)) + threes(vectors(2));
+  shared_for(calls, double(orbits()) * (2 * degree + 1) * all * lanes, [&](int call) {
+    int d = 0;
+    for (; call >= threes(vectors(d)); ++d) call -= threes(vectors(d));
     const TableRange range = wanted.tables[d];
     const Lane* first = spectrum + std::ptrdiff_t(range.first - made.first) * fields * lanes_;
-    in_threes(range.count() * fields * lanes_, [&](auto group, int at) {
+    in_three(vectors(d), call, [&](auto group, int at) {
       constexpr int W = decltype(group)::value;
       Columns<W> columns;
       columns.latitudes = nlat_;
@@ -290,15 +306,15 @@ void GridTransform::around(const Lane* spectrum, int degree, int fields, TableRa
       else
         write_orbits<false, W>(fourier_[d].data(), p_, series, nlon_, columns);
     });
-  }
+  });
 }
 
 void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectrum) const {
   const int vectors = fields * lanes_, width = 2 * p_ + 1;
   const int count = orbits();
-  const LaneScratch folded(std::size_t(count) * 4 * 3);
-  in_threes(vectors, [&](auto group, int at) {
+  const auto of_group = [&](auto group, int at) {
     constexpr int W = decltype(group)::value;
+    const LaneScratch folded(std::size_t(count) * 4 * W);
     Lane* const sums = folded.get();
     const std::ptrdiff_t kind = std::ptrdiff_t(count) * W;
     for (int w = 0; w < W; ++w) {
@@ -330,14 +346,16 @@ void GridTransform::spectrum_of(const double* samples, int fields, Lane* spectru
         if constexpr (R > 3) v.store(out + 6 * vectors);
       });
     }
-  });
+  };
+  shared_for(threes(vectors), double(count) * width * vectors * lanes,
+             [&](int call) { in_three(vectors, call, of_group); });
 }
 
 void GridTransform::project(const Lane* spectrum, int fields, double* coefficients) const {
   const std::ptrdiff_t row = std::ptrdiff_t(fields) * lanes_, count = coefficient_count(p_);
-  const Scratch<Lane, 64> folded(std::size_t(2) * made_);
-  Lane *const even = folded.get(), *const odd = even + made_;  // in z
-  for (int m = 0; m <= p_; ++m)
+  shared_for(p_ + 1, 2.0 * lanes * count * fields * made_, [&](int m) {
+    const Scratch<Lane, 64> folded(std::size_t(2) * made_);
+    Lane *const even = folded.get(), *const odd = even + made_;  // in z
     for (const int sign : {1, -1}) {
       if (m == 0 && sign < 0) continue;
       for (int field = 0; field < fields; ++field) {
@@ -356,6 +374,7 @@ void GridTransform::project(const Lane* spectrum, int fields, double* coefficien
         });
       }
     }
+  });
 }
 
 }  // namespace sim

@@ -1,5 +1,6 @@
 // Cost of the parts of a step and of the whole. The limits: a step of one vesicle with viscosity contrast 10 takes at
 // most 5 ms at order 8 and 80 ms at order 16, on one core.
+#include "sim/core/parallel.h"
 #include "sim/suspension/placements.h"
 #include "tests/bench/ceilings.h"
 #include "tests/sim/surfaces.h"
@@ -8,7 +9,6 @@
 
 #include <fftw3.h>
 #include <fmt/format.h>
-#include <omp.h>
 #include <sys/resource.h>
 
 namespace {
@@ -21,40 +21,46 @@ VesicleParameters prolate(int order, double contrast) { return test::vesicle("pr
 
 /// S alone, or S and D, four targets at once or as many as the processor can.
 void assembly(benchmark::State& state, bool with_double, LaneCount most) {
-  omp_set_num_threads(1);
-  const int p = int(state.range(0));
-  const LayerPotentials layers(p, 0, most);
-  const Coefficients x = initial_position(prolate(p, 1));
-  for (auto _ : state) benchmark::DoNotOptimize(layers.assemble(x, with_double));
-  bench::against_ceiling(state, bench::assembly_operations(p, with_double), 0, most);
+  with_threads(1, [&] {
+    const int p = int(state.range(0));
+    const LayerPotentials layers(p, 0, most);
+    const Coefficients x = initial_position(prolate(p, 1));
+    for (auto _ : state) benchmark::DoNotOptimize(layers.assemble(x, with_double));
+    bench::against_ceiling(state, bench::assembly_operations(p, with_double), 0, most);
+  });
 }
 
 /// One product with S: 3 fields; its six blocks are read.
 void apply(benchmark::State& state) {
-  omp_set_num_threads(1);
-  const int p = int(state.range(0));
-  const Coefficients x = initial_position(prolate(p, 1));
-  const LayerMatrices m = LayerPotentials(p).assemble(x, false);
-  for (auto _ : state) benchmark::DoNotOptimize(m.single.apply(x));
-  const double numbers = double(m.single.values.size());
-  bench::against_ceiling(state, 3 * numbers, sizeof(double) * numbers);
+  with_threads(1, [&] {
+    const int p = int(state.range(0));
+    const Coefficients x = initial_position(prolate(p, 1));
+    const LayerMatrices m = LayerPotentials(p).assemble(x, false);
+    for (auto _ : state) benchmark::DoNotOptimize(m.single.apply(x));
+    const double numbers = double(m.single.values.size());
+    bench::against_ceiling(state, 3 * numbers, sizeof(double) * numbers);
+  });
 }
 
 /// Value and all derivatives of 3 fields of degree p on the 2p-grid.
 void synthesis(benchmark::State& state) {
-  const int p = int(state.range(0));
-  const Basis basis(p, 2 * p);
-  const Coefficients x = test::smooth_field(p, p, 3, 1);
-  for (auto _ : state) benchmark::DoNotOptimize(basis.second(x));
-  bench::against_ceiling(state, bench::transform_operations(p, basis.latitudes(), 3, 3, 6));
+  with_threads(1, [&] {
+    const int p = int(state.range(0));
+    const Basis basis(p, 2 * p);
+    const Coefficients x = test::smooth_field(p, p, 3, 1);
+    for (auto _ : state) benchmark::DoNotOptimize(basis.second(x));
+    bench::against_ceiling(state, bench::transform_operations(p, basis.latitudes(), 3, 3, 6));
+  });
 }
 
 void analysis(benchmark::State& state) {
-  const int p = int(state.range(0));
-  const Basis basis(p, 2 * p);
-  const Matrix samples = basis.synthesize(test::smooth_field(p, p, 3, 1)).values;
-  for (auto _ : state) benchmark::DoNotOptimize(basis.analyze(samples));
-  bench::against_ceiling(state, bench::transform_operations(p, basis.latitudes(), 3, 1, 1));
+  with_threads(1, [&] {
+    const int p = int(state.range(0));
+    const Basis basis(p, 2 * p);
+    const Matrix samples = basis.synthesize(test::smooth_field(p, p, 3, 1)).values;
+    for (auto _ : state) benchmark::DoNotOptimize(basis.analyze(samples));
+    bench::against_ceiling(state, bench::transform_operations(p, basis.latitudes(), 3, 1, 1));
+  });
 }
 
 /// The longitude half of a synthesis of one field of degree p on the 2p-grid, as a dense product ...
@@ -104,47 +110,50 @@ void ceiling(benchmark::State& state) {
 
 /// The linear solve of a step of 0.1 from a zero guess, operators given.
 void solve(benchmark::State& state) {
-  omp_set_num_threads(1);
-  const int p = int(state.range(0));
-  Plans plans;
-  const Coefficients x = initial_position(prolate(p, 10));
-  const Membrane m = freeze_membrane(plans, {10, 0.01, 0}, x, 3, 0);
-  const std::vector flows{test::shear()};
-  const Coefficients r = test::forcing(m, flows, Vec3::Zero());
-  int iterations = 0;
-  for (auto _ : state) iterations = solve_system(m, 0.1, r, test::at_rest(p), 1e-10).iterations;
-  state.counters["iterations"] = iterations;
+  with_threads(1, [&] {
+    const int p = int(state.range(0));
+    Plans plans;
+    const Coefficients x = initial_position(prolate(p, 10));
+    const Membrane m = freeze_membrane(plans, {10, 0.01, 0}, x, 3, 0);
+    const std::vector flows{test::shear()};
+    const Coefficients r = test::forcing(m, flows, Vec3::Zero());
+    int iterations = 0;
+    for (auto _ : state) iterations = solve_system(m, 0.1, r, test::at_rest(p), 1e-10).iterations;
+    state.counters["iterations"] = iterations;
+  });
 }
 
 /// Steps of 0.1 of a vesicle in shear, from rest on: what a run costs without its saved states.
 void step(benchmark::State& state, double contrast, const char* reparametrization) {
-  omp_set_num_threads(1);
-  const int p = int(state.range(0));
-  Plans plans;
-  Scene scene = test::shear_scene(prolate(p, contrast), 0.1, 1e9);
-  scene.numerics.reparametrization = reparametrization;
-  const Model s = make_model(scene, plans);
-  Dynamics d = take_step(s, initial_dynamics(s), 0.1).value().dynamics;  // makes the plans
-  double iterations = 0, relabelled = 0;
-  for (auto _ : state) {
-    Step next = take_step(s, d, 0.1).value();
-    iterations += next.record.iterations;
-    relabelled += next.record.vesicles[0].relabelled;
-    d = std::move(next.dynamics);
-  }
-  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
-  state.counters["relabelled"] = benchmark::Counter(relabelled, benchmark::Counter::kAvgIterations);
+  with_threads(1, [&] {
+    const int p = int(state.range(0));
+    Plans plans;
+    Scene scene = test::shear_scene(prolate(p, contrast), 0.1, 1e9);
+    scene.numerics.reparametrization = reparametrization;
+    const Model s = make_model(scene, plans);
+    Dynamics d = take_step(s, initial_dynamics(s), 0.1).value().dynamics;  // makes the plans
+    double iterations = 0, relabelled = 0;
+    for (auto _ : state) {
+      Step next = take_step(s, d, 0.1).value();
+      iterations += next.record.iterations;
+      relabelled += next.record.vesicles[0].relabelled;
+      d = std::move(next.dynamics);
+    }
+    state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+    state.counters["relabelled"] = benchmark::Counter(relabelled, benchmark::Counter::kAvgIterations);
+  });
 }
 
 /// Velocity and tension of a state to be saved.
 void evaluation(benchmark::State& state) {
-  omp_set_num_threads(1);
-  const int p = int(state.range(0));
-  Plans plans;
-  const Scene scene = test::shear_scene(prolate(p, 10), 0.1, 1e9);
-  const Model s = make_model(scene, plans);
-  const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 2);
-  for (auto _ : state) benchmark::DoNotOptimize(evaluate(s, d).value());
+  with_threads(1, [&] {
+    const int p = int(state.range(0));
+    Plans plans;
+    const Scene scene = test::shear_scene(prolate(p, 10), 0.1, 1e9);
+    const Model s = make_model(scene, plans);
+    const Dynamics d = test::advanced(s, initial_dynamics(s), 0.1, 2);
+    for (auto _ : state) benchmark::DoNotOptimize(evaluate(s, d).value());
+  });
 }
 
 /// The kernel alone, single and double layer: sources and targets of one vesicle at p = 8, all in the first cache.
@@ -179,7 +188,6 @@ Scene suspension_scene(int count, const char* method) {
 
 /// One product with the interactions of all vesicles, far, fine and near; on all processors.
 void suspension_product(benchmark::State& state, const char* method) {
-  omp_set_num_threads(omp_get_num_procs());
   Plans plans;
   const Scene scene = suspension_scene(int(state.range(0)), method);
   const Model s = make_model(scene, plans);
@@ -207,7 +215,6 @@ void suspension_product(benchmark::State& state, const char* method) {
 
 /// One step of backward Euler of all of them, and the most memory the process has held so far.
 void suspension_step(benchmark::State& state, const char* method) {
-  omp_set_num_threads(omp_get_num_procs());
   Plans plans;
   const Scene scene = suspension_scene(int(state.range(0)), method);
   const Model s = make_model(scene, plans);

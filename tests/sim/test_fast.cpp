@@ -1,10 +1,9 @@
 // Fast sums: kernels split into a smooth part, summed by Fourier transforms, and a rest within a cut-off.
+#include "sim/core/parallel.h"
 #include "sim/fast/fast_sum.h"
 #include "sim/suspension/interaction.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
-
-#include <omp.h>
 
 #include <cmath>
 #include <complex>
@@ -176,15 +175,12 @@ TEST_CASE("fine points stand for the coarse ones where a patch of targets is nea
 
 TEST_CASE("the bits of a fast sum do not depend on the number of threads, nor on the sums before it") {
   const Cloud c = cloud(true);
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(1);
-  const std::vector<Points> one = fast(c, 1e-4, true, 1.0);
+  std::vector<Points> one, many;
+  with_threads(1, [&] { one = fast(c, 1e-4, true, 1.0); });
   for (const int threads : {2, 3}) {
-    omp_set_num_threads(threads);
-    const std::vector<Points> many = fast(c, 1e-4, true, 1.0);
+    with_threads(threads, [&] { many = fast(c, 1e-4, true, 1.0); });
     for (std::size_t g = 0; g < one.size(); ++g) CHECK(many[g] == one[g]);
   }
-  omp_set_num_threads(before);
   FastParts parts;
   FastSetting setting = fast_setting(1e-6, true);
   plan_fast_sum(setting, c.bodies, c.groups, c.exclusions, true, parts);

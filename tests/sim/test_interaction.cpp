@@ -1,10 +1,9 @@
+#include "sim/core/parallel.h"
 #include "sim/layers/source_tiles.h"
 #include "sim/suspension/gap.h"
 #include "sim/suspension/placements.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
-
-#include <omp.h>
 
 using namespace sim;
 using test::pi;
@@ -377,12 +376,10 @@ TEST_CASE("overlapping and nested vesicles are refused with their numbers") {
 TEST_CASE("a pair gives the same bits with one and with two threads") {
   const Scene scene = pair_scene({1.3, 0, -0.6}, 0.1);
   const auto run = [&](int threads) {
-    const int before = omp_get_max_threads();
-    omp_set_num_threads(threads);
     Plans plans;
     const Model s = make_model(scene, plans);
-    const std::vector<double> numbers = serialised(test::advanced(s, initial_dynamics(s), 0.1, 2));
-    omp_set_num_threads(before);
+    std::vector<double> numbers;
+    with_threads(threads, [&] { numbers = serialised(test::advanced(s, initial_dynamics(s), 0.1, 2)); });
     return numbers;
   };
   const bool same = run(1) == run(2);

@@ -1,8 +1,7 @@
+#include "sim/core/parallel.h"
 #include "sim/layers/product_matrix.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
-
-#include <omp.h>
 
 using namespace sim;
 using test::pi;
@@ -136,12 +135,9 @@ TEST_CASE("assembly gives the same bits four targets at once and as many as the 
 TEST_CASE("assembly gives the same bits with one and with two threads, and S does not depend on asking for D") {
   const Coefficients x = test::potato(9);
   const LayerPotentials layers(9);
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
-  const LayerMatrices one = layers.assemble(x, true);
-  omp_set_num_threads(2);
-  const LayerMatrices two = layers.assemble(x, true), alone = layers.assemble(x, false);
-  omp_set_num_threads(threads);
+  LayerMatrices one, two, alone;
+  with_threads(1, [&] { one = layers.assemble(x, true); });
+  with_threads(2, [&] { two = layers.assemble(x, true), alone = layers.assemble(x, false); });
   CHECK(one.single.values == two.single.values);
   CHECK(one.dual.values == two.dual.values);
   const Coefficients f = test::smooth_field(9, 9, 3, 1);

@@ -1,11 +1,10 @@
 // Several ranks, here threads of one process: what each has after a collective call.
 #include "sim/core/divided.h"
+#include "sim/core/parallel.h"
 #include "sim/fast/fast_sum.h"
 #include "sim/stepping/stepper.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
-
-#include <omp.h>
 
 #include <barrier>
 #include <random>
@@ -25,7 +24,6 @@ void as_ranks(int count, F&& f) {
   std::vector<std::thread> threads;
   for (int rank = 0; rank < count; ++rank)
     threads.emplace_back([&, rank] {
-      omp_set_num_threads(1);  // of this rank: teams that wait for one another keep the processors busy
       Ranks ranks;
       ranks.rank = rank;
       ranks.count = count;
@@ -44,7 +42,7 @@ void as_ranks(int count, F&& f) {
         meeting.arrive_and_wait();
         return got;
       };
-      f(ranks);
+      with_threads(1, [&] { f(ranks); });
     });
   for (std::thread& thread : threads) thread.join();
 }

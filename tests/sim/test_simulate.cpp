@@ -1,9 +1,8 @@
 #include "../support/temporary_folder.h"
+#include "sim/core/parallel.h"
 #include "sim/stepping/simulate.h"
 #include "surfaces.h"
 #include "tests/support/catch.h"
-
-#include <omp.h>
 
 #include <fstream>
 
@@ -93,13 +92,11 @@ TEST_CASE("a run in a cell that shears is resumed bit for bit, too") {
 
 TEST_CASE("the same scene gives the same bytes twice, and with one and two threads") {
   const support::TemporaryFolder folder;
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
-  run(short_scene(), folder.path() / "a.h5");
-  run(short_scene(), folder.path() / "b.h5");
-  omp_set_num_threads(2);
-  run(short_scene(), folder.path() / "c.h5");
-  omp_set_num_threads(threads);
+  with_threads(1, [&] {
+    run(short_scene(), folder.path() / "a.h5");
+    run(short_scene(), folder.path() / "b.h5");
+  });
+  with_threads(2, [&] { run(short_scene(), folder.path() / "c.h5"); });
   const bool twice = bytes(folder.path() / "a.h5") == bytes(folder.path() / "b.h5");
   const bool threaded = bytes(folder.path() / "a.h5") == bytes(folder.path() / "c.h5");
   CHECK(twice);
