@@ -318,8 +318,8 @@ void visit(P& p, V&& v) {
               .maximum = 1e-2,
               .exclusive_minimum = true,
               .when_absent =
-                  "a tenth of time.tolerance; with fixed steps a thousandth of the expected error of a step, "
-                  "from 1e-10 to 1e-6, and 1e-10 where none is expected yet"},
+                  "0.03 of time.tolerance; with fixed steps a ten-thousandth of the expected error of a step, "
+                  "from 1e-10 to 1e-7, and 1e-10 where none is expected yet"},
     p.gmres_tolerance);
   v(Parameter{.name = "source_order",
               .unit = "",

@@ -77,7 +77,7 @@ GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b,
     const Matrix one = v;
     return std::sqrt(products({&one, 1}, 1, v)[0]);
   };
-  GmresResult result{guess, 0, 0, false};
+  GmresResult result{guess, 0, 0, false, {}};
   const double scale = norm(b);
   if (scale == 0) {
     result.solution.setZero();
@@ -104,6 +104,7 @@ GmresResult gmres(const LinearMap& A, const LinearMap& inverse, const Vector& b,
   std::vector<double> g{beta}, cosine, sine;
   int k = 0;
   while (k < most_iterations && result.residual > tolerance) {
+    result.residuals.push_back(result.residual);
     directions.push_back(inverse(basis.last()));
     Vector w = A(directions[k]);
     auto [h, length] = basis.orthogonalise(w);

@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <span>
+#include <vector>
 
 namespace sim {
 
@@ -32,6 +33,7 @@ struct GmresResult {
   int iterations = 0;
   double residual = 0;  ///< |b - A x| / |b|, from the recurrence
   bool converged = false;
+  std::vector<double> residuals;  ///< in each direction's turn, before it
 };
 
 /// Solves A x = b from `guess` to |b - A x| <= tolerance |b|, in the norm of the inner product; `inverse` approximates

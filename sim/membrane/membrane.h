@@ -26,6 +26,8 @@ struct Membrane : Sheet {
 Membrane freeze_membrane(Plans&, const Material&, const Coefficients& position, double upsampling, int source_order,
                          const Coefficients& expected_tension = {}, std::optional<PinnedTension> pinned = {});
 
+/// How many unknowns there are of a vesicle of degree p.
+inline Eigen::Index unknowns(int order) { return 4 * Eigen::Index(coefficient_count(order)); }
 Vector packed(const Motion&);
 Motion unpacked(const Vector&, int order);
 

@@ -145,10 +145,11 @@ Attempt<Advance> bdf_step(const StepProblem& problem, int wanted_order, Extrapol
 
   const Suspension suspension = freeze(s, d, time, at, guess);
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity, behind);
-  Attempt<SuspensionSolve> result = solve(s, suspension, c, r, guess, moving, tolerance);
+  Attempt<SuspensionSolve> result = solve(s, suspension, c, r, guess, moving, tolerance, d);
   if (!result) return result.rejection();
 
-  Advance a{std::vector<Moved>(n), result->iterations, result->residual, suspension.division};
+  Advance a{std::vector<Moved>(n), result->iterations, result->residual, suspension.division,
+            std::move(result->learned)};
   divided_for(a.division, n, [&](int k) {
     const VesicleDynamics& v = d.vesicles[k];
     const Membrane& m = *suspension.membranes[k];

@@ -1,6 +1,8 @@
 #include "sim/stepping/dynamics.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -21,6 +23,7 @@ void transfer(Archive& ar, D& d) {
   ar(d.control.order), ar(d.control.at_order), ar(d.control.held), ar(d.control.resolution_due), ar(d.control.gap);
   ar.size(d.vesicles);
   for (auto& v : d.vesicles) visit(v, [&](Part, auto& member) { ar(member); });
+  ar(d.learned);
 }
 
 template <class Archive, class F>
@@ -46,6 +49,19 @@ struct Writer {
     (*this)(history.levels.size());
     for (const PastLevel& level : history.levels)
       visit_level(level, [this](const char*, const auto& part) { (*this)(part); });
+  }
+  /// Two numbers of single precision in the place of one.
+  void operator()(const Eigen::MatrixXf& m) {
+    (*this)(m.rows()), (*this)(m.cols());
+    for (Eigen::Index k = 0; k < m.size(); k += 2)
+      numbers.push_back(std::bit_cast<double>(std::array{m.data()[k], k + 1 < m.size() ? m.data()[k + 1] : 0.0F}));
+  }
+  void operator()(const Lessons& lessons) {
+    (*this)(lessons.size());
+    for (const auto& learned : lessons) {
+      (*this)(bool(learned));
+      if (learned) (*this)(learned->directions), (*this)(learned->images);
+    }
   }
   void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
 };
@@ -90,6 +106,28 @@ struct Reader {
     history.levels.resize(std::size_t(whole(0, most_past_levels)));
     for (PastLevel& level : history.levels) visit_level(level, [this](const char*, auto& part) { (*this)(part); });
   }
+  void operator()(Eigen::MatrixXf& m) {
+    const double rows = whole(0, double(numbers.size())), columns = whole(0, double(numbers.size()));
+    if (rows * columns > 2 * double(numbers.size() - at)) refuse("it is cut short");
+    m.resize(Eigen::Index(rows), Eigen::Index(columns));
+    for (Eigen::Index k = 0; k < m.size(); k += 2) {
+      const auto pair = std::bit_cast<std::array<float, 2>>(numbers[at++]);
+      m.data()[k] = pair[0];
+      if (k + 1 < m.size()) m.data()[k + 1] = pair[1];
+    }
+    if (!m.allFinite()) refuse("a number in it is impossible");
+  }
+  void operator()(Lessons& lessons) {
+    lessons.resize(std::size_t(whole(0, layout.vesicles)));
+    for (auto& learned : lessons) {
+      bool known = false;
+      (*this)(known);
+      if (!known) continue;
+      Learned read;
+      (*this)(read.directions), (*this)(read.images);
+      learned = std::make_shared<const Learned>(std::move(read));
+    }
+  }
   void size(std::vector<VesicleDynamics>& v) { v.resize(std::size_t(whole(layout.vesicles, layout.vesicles))); }
 };
 
@@ -120,6 +158,17 @@ void check(const VesicleDynamics& v, const TrajectoryLayout& layout) {
   if (!(v.area > 0) || !(v.upsampling >= 1) || v.upsampling > most_upsampling) refuse("a vesicle in it is impossible");
 }
 
+void check_lessons(const Dynamics& d) {
+  if (!d.learned.empty() && d.learned.size() != d.vesicles.size()) refuse("what it has learned is of other vesicles");
+  for (std::size_t k = 0; k < d.learned.size(); ++k)
+    if (const auto& known = d.learned[k]) {
+      const Eigen::Index size = unknowns(d.vesicles[k].position.order), columns = known->images.cols();
+      if (known->directions.rows() != size || known->images.rows() != size || known->directions.cols() != columns ||
+          columns > directions_kept(d.vesicles.size()))
+        refuse("what it has learned does not fit its vesicles");
+    }
+}
+
 /// All vesicles have taken the same steps.
 void check_histories(const Dynamics& d) {
   for (const VesicleDynamics& v : d.vesicles) {
@@ -144,6 +193,48 @@ void carry(Plans& plans, const Relabelling& r, VesicleDynamics& v) {
       if (part == Part::points) member = carried_points(r, before, v.position, member);
     }
   });
+}
+
+namespace {
+
+void transfer(Parcel& parcel, Eigen::MatrixXf& m) {
+  Matrix numbers = m.cast<double>();
+  parcel(numbers);
+  m = numbers.cast<float>();
+}
+
+void transfer(Parcel& parcel, std::shared_ptr<const Learned>& learned) {
+  bool known = bool(learned);
+  parcel(known);
+  if (!known) return;
+  Learned copy = learned ? *learned : Learned{};
+  transfer(parcel, copy.directions), transfer(parcel, copy.images);
+  if (!learned) learned = std::make_shared<const Learned>(std::move(copy));
+}
+
+}  // namespace
+
+Lessons delivered(const Lessons& learned, std::span<const int> keepers, const Division& division) {
+  if (division.whole() || learned.empty()) return learned;
+  const Ranks& ranks = *division.ranks;
+  Lessons mine(learned.size());
+  std::vector<Parcel> letters(std::size_t(ranks.count));
+  for (std::size_t k = 0; k < learned.size(); ++k) {
+    auto one = learned[k];
+    if (division.mine(int(k)))
+      mine[k] = std::move(one);
+    else if (!keepers.empty() && keepers[k] == ranks.rank)
+      transfer(letters[std::size_t(division.owner[k])], one);
+  }
+  if (keepers.empty()) return mine;
+  std::vector<std::vector<double>> given;
+  for (const Parcel& letter : letters) given.emplace_back(letter.numbers().begin(), letter.numbers().end());
+  const auto got = ranks.exchanged(given);
+  std::vector<Parcel> theirs;
+  for (const auto& one : got) theirs.emplace_back(one);
+  for (std::size_t k = 0; k < learned.size(); ++k)
+    if (division.mine(int(k)) && keepers[k] != ranks.rank) transfer(theirs[std::size_t(keepers[k])], mine[k]);
+  return mine;
 }
 
 std::vector<double> serialised(const Dynamics& d) {
@@ -198,6 +289,12 @@ std::size_t resume_numbers(const Dynamics& d, int past_levels) {
   for (VesicleDynamics& v : full.vesicles)
     while (static_cast<int>(v.history.levels.size()) < past_levels)
       v.history.levels.push_back({v.position, v.motion, v.sliding, 1});
+  full.learned.clear();
+  for (const VesicleDynamics& v : full.vesicles) {
+    const Eigen::MatrixXf most =
+        Eigen::MatrixXf::Zero(unknowns(v.position.order), directions_kept(full.vesicles.size()));
+    full.learned.push_back(std::make_shared<const Learned>(Learned{most, most}));
+  }
   return serialised(full).size();
 }
 
@@ -209,6 +306,7 @@ Dynamics deserialised(std::span<const double> numbers, const TrajectoryLayout& l
   if (reader.at != numbers.size()) refuse("there is more in it");
   for (const VesicleDynamics& v : d.vesicles) check(v, layout);
   check_histories(d);
+  check_lessons(d);
   if (d.control.order < 1 || d.control.order > highest_order) refuse("an order of time stepping in it is impossible");
   if (d.saves < 1 || d.time < 0 || !(d.dt_limit > 0)) refuse("a time in it is impossible");
   return d;

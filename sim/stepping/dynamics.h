@@ -7,6 +7,7 @@
 
 #include "sim/core/attempt.h"
 #include "sim/core/ranks.h"
+#include "sim/membrane/learned.h"
 #include "sim/membrane/membrane.h"
 #include "sim/stepping/history.h"
 #include "sim/surface/labels.h"
@@ -103,10 +104,14 @@ struct Dynamics {
   std::int64_t calm = 0;  ///< of fixed steps those since a failure, of adaptive ones those that were hopelessly short
   Control control;
   std::vector<VesicleDynamics> vesicles;
+  Lessons learned;           ///< what the last solve has left for the next; empty, or an entry a vesicle
+  std::vector<int> keepers;  ///< the rank that has it, by vesicle; empty: each rank has all. No part of a record
 };
+/// What was learned, each vesicle's on the rank that a division gives it, alone.
+Lessons delivered(const Lessons&, std::span<const int> keepers, const Division&);
 
 /// Form of the resume record; a record of another version is refused.
-inline constexpr int resume_version = 5;
+inline constexpr int resume_version = 6;
 /// More levels than any scheme looks back.
 inline constexpr int most_past_levels = 8;
 

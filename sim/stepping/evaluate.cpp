@@ -78,7 +78,7 @@ Attempt<State> evaluate(const Model& s, const Dynamics& d) {
     const auto x = positions(d);
     const Suspension suspension = freeze(s, d, d.time, x, motions(d));
     const auto r = suspension_forcing(suspension, s.scene.flows, d.time, s.scene.buoyancy.gravity);
-    Attempt<SuspensionSolve> result = solve(s, suspension, 0, r, motions(d), frames(d), solve_tolerance(s.scene));
+    Attempt<SuspensionSolve> result = solve(s, suspension, 0, r, motions(d), frames(d), solve_tolerance(s.scene), d);
     if (!result) return result.rejection();
     State state{d.step, d.time, std::vector<VesicleState>(d.vesicles.size())};
     divided_for(

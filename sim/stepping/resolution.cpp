@@ -187,6 +187,7 @@ Attempt<Dynamics> in_orders(const Model& s, const Dynamics& d, std::span<const i
     if (v.position.order == orders[k]) continue;
     const bool loses = orders[k] < v.position.order;
     v = in_order(v, orders[k]);
+    if (!changed.learned.empty()) changed.learned[k] = nullptr;
     if (loses && s.scene.numerics.correction) {
       const Attempt<Correction> c = correction_of(s, v, v.position, measured_geometry(s.plans, v.position));
       if (!c) return c.rejection();

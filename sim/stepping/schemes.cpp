@@ -27,9 +27,10 @@ Attempt<Advance> globally_implicit(const StepProblem& problem) {
   const auto x = positions(d);
   const Suspension suspension = freeze(s, d, d.time, x, motions(d));
   const auto r = suspension_forcing(suspension, problem.flows, time, s.scene.buoyancy.gravity);
-  Attempt<SuspensionSolve> result = solve(s, suspension, dt, r, motions(d), frames(d), solve_tolerance(s.scene));
+  Attempt<SuspensionSolve> result = solve(s, suspension, dt, r, motions(d), frames(d), solve_tolerance(s.scene), d);
   if (!result) return result.rejection();
-  Advance a{std::vector<Moved>(x.size()), result->iterations, result->residual, suspension.division};
+  Advance a{std::vector<Moved>(x.size()), result->iterations, result->residual, suspension.division,
+            std::move(result->learned)};
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (!a.division.mine(int(k))) continue;
     Motion& motion = result->motions[k];

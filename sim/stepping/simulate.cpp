@@ -156,18 +156,20 @@ Dynamics resumed(const TrajectoryWriter& file, const Scene& scene, const std::fi
   return d;
 }
 
-/// Renews the resume point after every step, but not more than 20 times a second.
+/// Renews the resume point after every step, but not more than 20 times a second, and not for more than a twentieth of
+/// the time.
 class ResumeClock {
  public:
-  bool due() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(50)) return false;
-    last_ = now;
-    return true;
+  bool due() const { return Clock::now() >= next_; }
+  void start() { started_ = Clock::now(); }
+  void stop() {
+    const auto now = Clock::now();
+    next_ = std::max(started_ + std::chrono::milliseconds(50), now + 19 * (now - started_));
   }
 
  private:
-  std::chrono::steady_clock::time_point last_{};
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point started_{}, next_{};
 };
 
 std::vector<std::string> starting_warnings(const Model& s, const Dynamics& d, const std::optional<State>& from) {
@@ -218,7 +220,7 @@ class Run {
       if (auto rejection = begin_anew()) return rejection;
     if (auto rejection = adapt_orders(before, step->record.dt, space)) return rejection;
     warn_of_shapes();
-    if (file_ && clock_.due()) write_resume_point();
+    if (any(model_.ranks, file_ && clock_.due())) write_resume_point();
     model_.plans.forget_unused();
     compare_ranks();
     return std::nullopt;
@@ -233,9 +235,10 @@ class Run {
         if (const auto rejection = save())  // the last good state
           note(fmt::format("t = {:.6g}: {}", d_.time, rejection->reason));
     }
+    const std::vector<double> record = resume_record();
     if (file_) {
       file_->append_steps(records_);
-      file_->finish_resume(serialised(d_), d_.step);
+      file_->finish_resume(record, d_.step);
     }
     // Nobody ends before the file is whole: who is alone with it may need all the time there is.
     any(model_.ranks, false);
@@ -378,10 +381,25 @@ class Run {
             "start them on machines of one kind");
   }
 
+  /// Of the first rank, with what all have learned; empty on the others.
+  std::vector<double> resume_record() const {
+    if (model_.ranks.count == 1) return serialised(d_);
+    const Division all_to_first{&model_.ranks, std::vector<int>(d_.vesicles.size(), 0)};
+    Lessons learned = delivered(d_.learned, d_.keepers, all_to_first);
+    if (!file_) return {};
+    Dynamics whole = d_;
+    whole.learned = std::move(learned);
+    return serialised(whole);
+  }
+
   void write_resume_point() {
+    clock_.start();
+    const std::vector<double> record = resume_record();
+    if (!file_) return;
     file_->append_steps(records_);
     records_.clear();
-    file_->write_resume(serialised(d_));
+    file_->write_resume(record);
+    clock_.stop();
   }
 
   const Model& model_;

@@ -75,7 +75,8 @@ Suspension freeze(const Model& s, const Dynamics& d, double time, std::span<cons
 }
 
 Attempt<SuspensionSolve> solve(const Model& s, const Suspension& suspension, double c, std::span<const Coefficients> r,
-                               std::span<const Motion> guess, std::span<const Frame> frames, double tolerance) {
+                               std::span<const Motion> guess, std::span<const Frame> frames, double tolerance,
+                               const Dynamics& before) {
   const Preconditioner kind =
       s.scene.numerics.preconditioner == "block" ? Preconditioner::block : Preconditioner::spectral;
   std::vector<RigidMotion> rigid;
@@ -86,7 +87,10 @@ Attempt<SuspensionSolve> solve(const Model& s, const Suspension& suspension, dou
   for (const auto& m : suspension.membranes) pinned = pinned || (m && m->pinned);
   if (any(s.ranks, pinned) && !s.scene.numerics.gmres_tolerance && steps_adapt(s.scene.time))
     tolerance = std::max(tolerance, stiff_sphere);
-  SuspensionSolve result = solve_suspension(suspension, c, r, guess, tolerance, kind, rigid);
+  // An instantaneous problem knows no stiffness: what steps have learned costs it iterations.
+  const Lessons known = c > 0 ? delivered(before.learned, before.keepers, suspension.division) : Lessons{};
+  SuspensionSolve result = solve_suspension(suspension, c, r, guess, tolerance, kind, rigid, known);
+  if (!result.converged && !known.empty()) result = solve_suspension(suspension, c, r, guess, tolerance, kind, rigid);
   if (!result.converged) return not_converged(result.residual, result.iterations);
   return result;
 }

@@ -45,6 +45,7 @@ struct Advance {
   int iterations = 0;
   double residual = 0;
   Division division = {};  ///< whose vesicles are which
+  Lessons learned = {};
 };
 
 /// The reason of a linear solve that has not converged.
@@ -59,9 +60,11 @@ double gap_floor(const Model&, const Dynamics&);
 Suspension freeze(const Model&, const Dynamics&, double time, std::span<const Coefficients> positions,
                   std::span<const Motion> expected);
 
-/// Solves for the motions at frozen positions, relative to those of the frames, to a relative residual.
+/// Solves for the motions at frozen positions, relative to those of the frames, to a relative residual, with what the
+/// steps before have learned.
 Attempt<SuspensionSolve> solve(const Model&, const Suspension&, double c, std::span<const Coefficients> forcing,
-                               std::span<const Motion> guess, std::span<const Frame> frames, double tolerance);
+                               std::span<const Motion> guess, std::span<const Frame> frames, double tolerance,
+                               const Dynamics& before);
 
 /// Velocity of a frame at the points of a body.
 Coefficients frame_velocity(const RigidBody&, const Frame&);

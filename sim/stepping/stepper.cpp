@@ -221,6 +221,10 @@ Attempt<Step> take_step(const Model& s, const Dynamics& before, double dt) {
   d.time = before.time + dt;
   d.step = before.step + 1;
   if (auto rejection = finish_vesicles(s, step, *advance, dt)) return *rejection;
+  d.learned = std::move(advance->learned);
+  d.keepers = std::move(advance->division.owner);
+  for (std::size_t k = 0; k < d.learned.size(); ++k)  // of coefficients in other parameters
+    if (record.vesicles[k].relabelled > 0) d.learned[k] = nullptr;
   const Gap gap = smallest_gap(s.plans, positions(d), cell_at(s.scene, d.time), s.ranks);
   if (gap.crossing || gap.distance < gap_floor(s, d)) return too_close(s, before, gap);
   if (std::isfinite(gap.distance)) d.control.gap = gap.distance;

@@ -179,9 +179,9 @@ Vector products_of_parts(std::span<const Block> blocks, const Division& division
   return sums;
 }
 
-/// Left-hand side of the coupled system.
+/// Left-hand side of the coupled system. What each block by itself makes of its part goes into `searched`, if given.
 Vector apply_blocks(std::span<const Block> blocks, const Interaction& interaction, const Division& division,
-                    const Vector& y) {
+                    const Vector& y, std::span<Searched> searched) {
   const int n = int(blocks.size());
   const std::vector<Vector> parts = split(blocks, y);
   std::vector<Densities> densities(n);
@@ -192,6 +192,9 @@ Vector apply_blocks(std::span<const Block> blocks, const Interaction& interactio
         Trial trial = blocks[i].trial(parts[i]);
         densities[i] = std::move(trial.densities);
         velocity[i] = std::move(trial.own_velocity);
+        if (searched.empty()) return;
+        searched[i].directions.push_back(parts[i]);
+        if (!interaction.none()) searched[i].images.push_back(blocks[i].rows(parts[i], velocity[i]));
       },
       [&](Parcel& parcel, int i) { parcel(densities[i].force), parcel(densities[i].dual); });
   if (!interaction.none()) {
@@ -200,13 +203,19 @@ Vector apply_blocks(std::span<const Block> blocks, const Interaction& interactio
       if (division.mine(i)) velocity[i].values += others[i].values;
   }
   std::vector<Vector> rows(n);
-  divided_for(division, n, [&](int i) { rows[i] = blocks[i].rows(parts[i], velocity[i]); });
+  divided_for(division, n, [&](int i) {
+    rows[i] = blocks[i].rows(parts[i], velocity[i]);
+    if (!searched.empty() && interaction.none()) searched[i].images.push_back(rows[i]);
+  });
   return join(rows);
 }
 
-Vector precondition_blocks(std::span<const Block> blocks, const Division& division, const Vector& y) {
+Vector precondition_blocks(std::span<const Block> blocks, const Division& division, const Lessons& known,
+                           const Vector& y) {
   std::vector<Vector> parts = split(blocks, y);
-  divided_for(division, int(blocks.size()), [&](int i) { parts[i] = blocks[i].precondition(parts[i]); });
+  divided_for(division, int(blocks.size()), [&](int i) {
+    parts[i] = precondition(known.empty() ? nullptr : known[i].get(), blocks[i].precondition, parts[i]);
+  });
   return join(parts);
 }
 
@@ -214,7 +223,7 @@ Vector precondition_blocks(std::span<const Block> blocks, const Division& divisi
 
 SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const Coefficients> forcing,
                                  std::span<const Motion> guess, double tolerance, Preconditioner kind,
-                                 std::span<const RigidMotion> frames) {
+                                 std::span<const RigidMotion> frames, const Lessons& known) {
   const int n = int(s.membranes.size());
   std::vector<Block> blocks(n);
   std::vector<Vector> right(n), start(n);
@@ -232,13 +241,24 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
   };
   divided_for(s.division, n, prepare);
   constexpr int most_iterations = 300;
-  const GmresResult result = gmres([&](const Vector& y) { return apply_blocks(blocks, s.interaction, s.division, y); },
-                                   [&](const Vector& y) { return precondition_blocks(blocks, s.division, y); },
-                                   join(right), join(start), tolerance, most_iterations,
+  std::vector<Searched> searched(n);
+  bool searches = false;  // the guess is none of the directions
+  const auto apply = [&](const Vector& y) {
+    return apply_blocks(blocks, s.interaction, s.division, y, searches ? std::span(searched) : std::span<Searched>{});
+  };
+  const auto inverse = [&](const Vector& y) {
+    searches = true;
+    return precondition_blocks(blocks, s.division, known, y);
+  };
+  const GmresResult result = gmres(apply, inverse, join(right), join(start), tolerance, most_iterations,
                                    [&](std::span<const Matrix> vectors, int count, const Vector& with) {
                                      return products_of_parts(blocks, s.division, vectors, count, with);
                                    });
-  SuspensionSolve solve{std::vector<Motion>(n), result.iterations, result.residual, result.converged};
+  SuspensionSolve solve{std::vector<Motion>(n), result.iterations, result.residual, result.converged, Lessons(n)};
+  const std::size_t use = telling(result.residuals);
+  divided_for(s.division, n, [&](int i) {
+    solve.learned[i] = learned(known.empty() ? nullptr : known[i].get(), searched[i], use, directions_kept(n));
+  });
   const std::vector<Vector> parts = split(blocks, result.solution);
   for (int i = 0; i < n; ++i) {
     if (!s.division.mine(i)) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/membrane/block.h"
+#include "sim/membrane/learned.h"
 #include "sim/suspension/interaction.h"
 #include "sim/suspension/repulsion.h"
 
@@ -66,12 +67,14 @@ struct SuspensionSolve {
   int iterations = 0;
   double residual = 0;
   bool converged = false;
+  Lessons learned;  ///< what the next solve may use
 };
 /// Solves the coupled system from a guess. `frames`: for each vesicle a rigid motion close to its own. The unknown is
 /// the rest of the motion, so the tolerance is relative to the rest, and displacements over the time c are those of
-/// the rest. Each rank gets the motions of its own vesicles.
+/// the rest. Each rank gets the motions of its own vesicles. `known`: what earlier solves have learned, nothing or an
+/// entry a vesicle.
 SuspensionSolve solve_suspension(const Suspension&, double c, std::span<const Coefficients> forcing,
                                  std::span<const Motion> guess, double tolerance, Preconditioner,
-                                 std::span<const RigidMotion> frames = {});
+                                 std::span<const RigidMotion> frames = {}, const Lessons& known = {});
 
 }  // namespace sim

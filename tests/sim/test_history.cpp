@@ -143,6 +143,12 @@ TEST_CASE(
         }
       }
     }
+    CHECK(serialised(d).size() <= resume_numbers(d, row.function.past_levels));
+    d.learned.clear();
+    for (const VesicleDynamics& v : d.vesicles) {
+      const Eigen::MatrixXf all = Eigen::MatrixXf::Ones(unknowns(v.position.order), directions_kept(d.vesicles.size()));
+      d.learned.push_back(std::make_shared<const Learned>(Learned{all, all}));
+    }
     CHECK(serialised(d).size() == resume_numbers(d, row.function.past_levels));
   }
 }

@@ -153,8 +153,16 @@ TEST_CASE("a step taken by two, three or 23 ranks is the step of one, bit for bi
     Plans plans;
     const Model s = make_model(scene, plans, ranks);
     Dynamics d = initial_dynamics(s);
-    for (int k = 0; k < 2; ++k) d = take_step(s, d, 0.02).value().dynamics;
-    return serialised(d);
+    for (int k = 0; k < 3; ++k) d = take_step(s, d, 0.02).value().dynamics;
+    // What was learned stays with the rank of its vesicle: here all for each in turn.
+    std::vector<double> numbers;
+    for (int rank = 0; rank < ranks.count; ++rank) {
+      Dynamics whole = d;
+      whole.learned =
+          delivered(d.learned, d.keepers, ranks.count == 1 ? Division{} : Division{&ranks, std::vector<int>(3, rank)});
+      if (rank == ranks.rank) numbers = serialised(whole);
+    }
+    return numbers;
   };
   std::vector<double> expected;
   as_ranks(1, [&](const Ranks& ranks) { expected = stepped(ranks); });

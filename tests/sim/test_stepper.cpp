@@ -201,11 +201,11 @@ TEST_CASE(
   for (const char* scheme : {"bdf2", "bdf3"}) {
     const Run exact = run(scheme, 1e-13), usual = run(scheme, std::nullopt), tight = run(scheme, 1e-10);
     const double radius = std::sqrt(4 * std::numbers::pi);  // of the norm: a root mean square over the sphere
-    // A thousandth each step, and as much again for what grows from one to the next.
-    CHECK((usual.position - exact.position).norm() / radius < 2e-3 * usual.errors);
-    CHECK(usual.iterations < 0.85 * tight.iterations);
-    CHECK(usual.loosest <= 1e-6);
-    CHECK(usual.loosest > 1e-9);
+    // A ten-thousandth each step, and as much again for what grows from one to the next.
+    CHECK((usual.position - exact.position).norm() / radius < 2e-4 * usual.errors);
+    CHECK(usual.iterations < 0.95 * tight.iterations);
+    CHECK(usual.loosest <= 1e-7);
+    CHECK(usual.loosest > 1e-10);
     CHECK(tight.loosest <= 1e-10);
   }
 }
