@@ -4,6 +4,7 @@
 #include "app/base/printable.h"
 #include "app/figures/phase_diagram.h"
 #include "app/figures/plots.h"
+#include "app/pictures/cell_images.h"
 #include "app/pictures/flow_picture.h"
 #include "app/pictures/pictures.h"
 #include "app/scene/scene_text.h"

@@ -185,7 +185,9 @@ Image draw_frame(Renderer& renderer, const Frame& frame) {
   renderer.draw_ground(frame);
   renderer.draw_arrows(frame);
   if (!find_style(frame.view.style).cut) renderer.draw_flow_lines(frame);
+  renderer.draw_face_lines(frame, false);
   renderer.draw_bodies(frame);
+  renderer.draw_face_lines(frame, true);
   Image image = renderer.finish(frame);
   draw_captions(image, renderer.font_, frame);
   return image;

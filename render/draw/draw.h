@@ -36,6 +36,8 @@ class Renderer {
   void draw_ghosts(const Frame&);
   void draw_cut_edges(const Frame&);
   void draw_flow_lines(const Frame&);
+  /// Edges of frame.faces and sections of bodies by them: of the faces in front of all bodies, or of those behind.
+  void draw_face_lines(const Frame&, bool in_front);
   /// An arrow of the flow along the line of sight.
   struct EndOn {
     glm::dvec3 place;

@@ -28,16 +28,23 @@ std::vector<std::size_t> front_to_back(const Frame& frame) {
   return bodies;
 }
 
+// Styles that show the inside of membranes leave them open; all others show sections as of solid bodies.
+bool fills_sections(const StyleRow& style) { return !style.see_through && !style.cut; }
+
+std::string box_defines(const StyleRow& style, bool boxed) {
+  if (!boxed) return "";
+  return fills_sections(style) ? "#define BOXED\n#define CAPPED\n" : "#define BOXED\n";
+}
+
 }  // namespace
 
 const Program& Renderer::use_for_bodies(const std::string& name, const Frame& frame, const std::string& defines) {
-  const double cue = depth_cue_of(frame.view, frame.vesicles > 0 ? frame.vesicles : frame.bodies.size());
-  const Program& p = program(name, defines + (cue > 0 ? "#define DEPTH_CUE\n" : ""));
+  const glm::vec3 cue = depth_cue_in(frame);
+  const Program& p = program(name, defines + (cue.x > 0 ? "#define DEPTH_CUE\n" : ""));
   p.use();
   set_camera(p, frame.camera);
-  if (cue > 0) {
-    const double away = glm::distance(frame.camera.eye, frame.camera.target), depth = frame.camera.depth;
-    p.set("u_cue", glm::vec3(cue, (depth - away) / frame.camera.half_height, 2 * depth / frame.camera.half_height));
+  if (cue.x > 0) {
+    p.set("u_cue", cue);
     p.set("u_height", static_cast<float>(framebuffer_->height()));
     set_ground(p, frame);
   }
@@ -64,7 +71,9 @@ void Renderer::draw_batch(const Frame& frame, const Batch& batch, const Variant&
   const StyleRow& style = find_style(frame.view.style);
   const Program& p = use_for_bodies("body", frame,
                                     body_defines(style, frame.view, variant.grid, variant.sparse, variant.tracers,
-                                                 variant.sign_dots, variant.occluded));
+                                                 variant.sign_dots, variant.occluded) +
+                                        box_defines(style, variant.boxed));
+  set_box(p, frame);
   if (style.field) {
     palette_.bind();
     p.set("u_map", 0);
@@ -80,7 +89,10 @@ void Renderer::draw_batch(const Frame& frame, const Batch& batch, const Variant&
     p.set("u_tracer_dark", linear(tracer_dark));
   }
   upload(batch);
+  const bool both_sides = variant.boxed && fills_sections(style);
+  if (both_sides) context_.gl().Disable(GL_CULL_FACE);
   context_.gl().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indices.size()), GL_UNSIGNED_INT, nullptr);
+  if (both_sides) context_.gl().Enable(GL_CULL_FACE);
 }
 
 // One draw for all bodies that are painted in one way.
@@ -108,6 +120,7 @@ void Renderer::draw_ghosts(const Frame& frame) {
     variant.grid = variant.grid || own.grid;
     variant.sparse = variant.sparse || own.sparse;
     variant.tracers = variant.tracers || own.tracers;
+    variant.boxed = variant.boxed || own.boxed;
   }
   Batch batch;
   for (std::size_t k = 0; k < frame.bodies.size(); ++k)
@@ -141,7 +154,8 @@ void Renderer::draw_outlines(const Frame& frame) {
     outlines.insert(outlines.end(), body.mesh.position.size(),
                     glm::vec4(vector_of(outline_colour(frame, body)), width));
   }
-  const Program& p = use_for_bodies("outline", frame, "");
+  const Program& p = use_for_bodies("outline", frame, frame.faces ? "#define BOXED\n" : "");
+  set_box(p, frame);
   p.set("u_sample",
         glm::vec2(2.0F / static_cast<float>(framebuffer_->width()), 2.0F / static_cast<float>(framebuffer_->height())));
   hulls_.attribute(0, positions);
