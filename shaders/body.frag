@@ -13,7 +13,7 @@
 //   SPARSE      with GRID: vesicles so small that their lines fade to a few, or to none
 //   OCCLUDED    hollows and neighbours darken it
 //   DEPTH_CUE   fades into the ground with the distance
-//   BOXED, CAPPED   ends at the faces of a box: box.glsl
+//   BOXED       ends at the faces of a box
 in vec3 v_eye, v_normal, v_label;
 flat in vec3 v_paint;  // linear
 #ifdef CUT_BY_SAMPLE
@@ -21,10 +21,6 @@ in float v_cut;
 #endif
 #ifdef BOXED
 in vec3 v_place;
-#endif
-#ifdef CAPPED
-uniform mat4 u_view, u_projection;
-uniform vec3 u_eye;  // its place; orthographic: far away in its direction
 #endif
 out vec4 f_colour;
 #ifdef GHOST
@@ -233,35 +229,13 @@ void main() {
 #ifdef BOXED
   if (outside_box(v_place)) discard;
 #endif
-#ifdef DEPTH_CUE
-  float near = v_near;
-#endif
-#ifdef CAPPED
-  // Where the line of sight comes into the box within the body, it meets a back face first: there the section is seen.
-  gl_FragDepth = gl_FragCoord.z;
-  if (!gl_FrontFacing) {
-    vec3 toward = u_perspective ? u_eye - v_place : u_eye, face;
-    float away = length(toward), way = to_face(v_place, toward / away, face);
-    if (u_perspective && way > away) discard;  // the eye is in the box
-    vec4 eye = u_view * vec4(v_place + way * toward / away, 1.0), clip = u_projection * eye;
-    gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
-#ifdef FLAT
-    colour = encode(v_paint);
-#else
-    colour = encode(lit(mix(v_paint, vec3(1.0), 0.4), mat3(u_view) * face, v, 0.0, vec2(1.0)));
-#endif
-#ifdef DEPTH_CUE
-    near = near_share(eye.z);
-#endif
-  }
-#endif
 #ifdef GHOST
 #ifdef DEPTH_CUE
-  alpha *= near;
+  alpha *= v_near;
 #endif
   f_colour = vec4(colour, alpha);
 #elif defined(DEPTH_CUE)
-  f_colour = mix(ground(gl_FragCoord.y / u_height), vec4(colour, 1.0), near);
+  f_colour = mix(ground(gl_FragCoord.y / u_height), vec4(colour, 1.0), v_near);
 #else
   f_colour = vec4(colour, 1.0);
 #endif

@@ -28,14 +28,6 @@ std::vector<std::size_t> front_to_back(const Frame& frame) {
   return bodies;
 }
 
-// Styles that show the inside of membranes leave them open; all others show sections as of solid bodies.
-bool fills_sections(const StyleRow& style) { return !style.see_through && !style.cut; }
-
-std::string box_defines(const StyleRow& style, bool boxed) {
-  if (!boxed) return "";
-  return fills_sections(style) ? "#define BOXED\n#define CAPPED\n" : "#define BOXED\n";
-}
-
 }  // namespace
 
 const Program& Renderer::use_for_bodies(const std::string& name, const Frame& frame, const std::string& defines) {
@@ -72,7 +64,7 @@ void Renderer::draw_batch(const Frame& frame, const Batch& batch, const Variant&
   const Program& p = use_for_bodies("body", frame,
                                     body_defines(style, frame.view, variant.grid, variant.sparse, variant.tracers,
                                                  variant.sign_dots, variant.occluded) +
-                                        box_defines(style, variant.boxed));
+                                        (variant.boxed ? "#define BOXED\n" : ""));
   set_box(p, frame);
   if (style.field) {
     palette_.bind();
@@ -89,10 +81,7 @@ void Renderer::draw_batch(const Frame& frame, const Batch& batch, const Variant&
     p.set("u_tracer_dark", linear(tracer_dark));
   }
   upload(batch);
-  const bool both_sides = variant.boxed && fills_sections(style);
-  if (both_sides) context_.gl().Disable(GL_CULL_FACE);
   context_.gl().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indices.size()), GL_UNSIGNED_INT, nullptr);
-  if (both_sides) context_.gl().Enable(GL_CULL_FACE);
 }
 
 // One draw for all bodies that are painted in one way.

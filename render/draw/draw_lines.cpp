@@ -118,62 +118,6 @@ void Renderer::draw_end_on(const Frame& frame, const std::vector<EndOn>& arrows)
   gl.Disable(GL_BLEND);
 }
 
-// No depth is compared: a face is in front of all that is in the box, or behind it.
-void Renderer::draw_face_lines(const Frame& frame, bool in_front) {
-  if (!frame.faces) return;
-  const Gl& gl = context_.gl();
-  const Program& p = program("ribbon", "");
-  p.use();
-  p.set("u_core", -2.0F);
-  start_blending();
-  gl.Disable(GL_DEPTH_TEST);
-  gl.DepthMask(GL_FALSE);
-  gl.Disable(GL_CULL_FACE);
-  const std::vector<Box> overlays = lay_out(frame, font_).boxes();
-  const glm::vec3 cue = depth_cue_in(frame);
-  const auto shown = [&](const std::vector<glm::dvec3>& points, bool under_text) {
-    std::vector<float> shares;
-    for (const glm::dvec3& point : points) {
-      const float z = (frame.camera.view * glm::vec4(glm::vec3(frame.camera.place(point)), 1)).z;
-      const double clear = under_text ? clear_of(overlays, frame.camera.picture_place(point), frame.view.size) : 1;
-      shares.push_back(static_cast<float>(clear) * (1 - cue.x * std::clamp((cue.y - z) / cue.z, 0.0F, 1.0F)));
-    }
-    return shares;
-  };
-  const auto draw_edges = [&] {
-    const float half_width = samples(frame.view, 1.1, 0.4);
-    p.set("u_half_width", half_width);
-    p.set("u_rim", vector_of(inks_on(ground_of(frame.view.background)).flow_line));
-    for (const BoxEdge& edge : edges_of(*frame.faces, frame.camera))
-      if (edge.in_front == in_front)
-        draw_ribbon(frame.camera, edge.line.points, false, half_width + 1, 0, shown(edge.line.points, true));
-  };
-  if (!in_front) draw_edges();
-  for (const Body& body : frame.bodies) {
-    if (frame.view.outline_width == 0 || !crosses(body.mesh.position, *frame.faces)) continue;
-    const float half_width =
-        std::max(0.5F, detail_in(frame, body).outline * samples(frame.view, frame.view.outline_width / 2, 0.5));
-    p.set("u_half_width", half_width);
-    p.set("u_rim", vector_of(outline_colour(frame, body)));
-    for (int face = 0; face < FaceBox::faces; ++face) {
-      if (faces_eye(*frame.faces, face, frame.camera) != in_front) continue;
-      for (const SpaceLine& section : face_sections(body.mesh, *frame.faces, face)) {
-        std::vector<SpaceLine> parts{section};
-        if (body.cut)
-          parts = parts_within(section,
-                               std::vector{HalfSpace{body.cut->normal, glm::dot(body.cut->normal, body.cut->point)}});
-        for (const SpaceLine& part : parts)
-          draw_ribbon(frame.camera, part.points, part.closed, half_width + 1, 0, shown(part.points, false));
-      }
-    }
-  }
-  if (in_front) draw_edges();
-  gl.Enable(GL_CULL_FACE);
-  gl.DepthMask(GL_TRUE);
-  gl.Enable(GL_DEPTH_TEST);
-  gl.Disable(GL_BLEND);
-}
-
 // The rims that the plane leaves: a bright core between two dark lines, like the membrane's thickness under a lens.
 void Renderer::draw_cut_edges(const Frame& frame) {
   const Gl& gl = context_.gl();

@@ -36,7 +36,6 @@ inline void set_box(const Program& program, const Frame& frame) {
   if (!frame.faces) return;
   program.set("u_low", glm::vec3(frame.camera.place(frame.faces->low)));
   program.set("u_high", glm::vec3(frame.camera.place(frame.faces->high)));
-  program.set("u_eye", glm::vec3(frame.camera.place(frame.camera.eye)));
 }
 
 inline void set_camera(const Program& program, const Camera& camera) {

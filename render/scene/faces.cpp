@@ -1,6 +1,7 @@
 #include "render/scene/faces.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <utility>
@@ -134,14 +135,66 @@ std::vector<SpaceLine> sections(const Mesh& mesh, int axis, double place) {
   return curves;
 }
 
+/// What closed curves in a plane enclose, by the even-odd rule, within the rectangle: strips between all heights at
+/// which something begins or ends, cut at the curves. u, v: the axes in the plane.
+std::vector<dvec3> filled(const std::vector<SpaceLine>& curves, const FaceBox& box, glm::length_t u, glm::length_t v) {
+  struct Side {
+    dvec3 low, high;  // by v
+    double at(double height, glm::length_t axis) const {
+      return low[axis] + (height - low[v]) / (high[v] - low[v]) * (high[axis] - low[axis]);
+    }
+    glm::length_t v;
+  };
+  std::vector<Side> sides;
+  std::vector<double> heights{box.low[v], box.high[v]};
+  const auto add_height = [&](double height) {
+    if (height > box.low[v] && height < box.high[v]) heights.push_back(height);
+  };
+  for (const SpaceLine& curve : curves)
+    for (std::size_t k = 0; k < curve.points.size(); ++k) {
+      const dvec3 &a = curve.points[k], &b = curve.points[(k + 1) % curve.points.size()];
+      add_height(a[v]);
+      if (a[v] == b[v]) continue;
+      sides.push_back(a[v] < b[v] ? Side{a, b, v} : Side{b, a, v});
+      for (const double edge : {box.low[u], box.high[u]})
+        if ((a[u] < edge) != (b[u] < edge)) add_height(a[v] + (edge - a[u]) / (b[u] - a[u]) * (b[v] - a[v]));
+    }
+  std::sort(heights.begin(), heights.end());
+  std::vector<dvec3> triangles;
+  const double more = 1e-4 * (box.high[v] - box.low[v]);  // no sample falls between two strips
+  for (std::size_t k = 0; k + 1 < heights.size(); ++k) {
+    const double low = heights[k], high = heights[k + 1], middle = (low + high) / 2;
+    std::vector<std::pair<double, const Side*>> across;
+    for (const Side& side : sides)
+      if (side.low[v] <= middle && middle < side.high[v]) across.emplace_back(side.at(middle, u), &side);
+    std::sort(across.begin(), across.end());
+    for (std::size_t i = 0; i + 1 < across.size(); i += 2) {
+      std::array<dvec3, 4> corners{};
+      for (std::size_t c = 0; c < 4; ++c) {
+        const Side& side = *across[i + c % 2].second;
+        const double height = c < 2 ? low : high;
+        corners[c] = side.low;
+        corners[c][u] = std::clamp(side.at(height, u), box.low[u], box.high[u]);
+        corners[c][v] = c < 2 ? low - more : high + more;
+      }
+      if (corners[0][u] == corners[1][u] && corners[2][u] == corners[3][u]) continue;
+      for (const std::size_t c : {0U, 1U, 2U, 2U, 1U, 3U}) triangles.push_back(corners[c]);
+    }
+  }
+  return triangles;
+}
+
 }  // namespace
 
-std::vector<SpaceLine> face_sections(const Mesh& mesh, const FaceBox& box, int face) {
+FaceSection face_section(const Mesh& mesh, const FaceBox& box, int face) {
+  const glm::length_t axis = face / 2;
+  const std::vector<SpaceLine> curves = sections(mesh, face / 2, face % 2 == 1 ? box.high[axis] : box.low[axis]);
   const std::vector<HalfSpace> kept = half_spaces(box, face);
-  std::vector<SpaceLine> all;
-  for (const SpaceLine& curve : sections(mesh, face / 2, face % 2 == 1 ? box.high[face / 2] : box.low[face / 2]))
-    for (SpaceLine& part : parts_within(curve, kept)) all.push_back(std::move(part));
-  return all;
+  FaceSection section;
+  for (const SpaceLine& curve : curves)
+    for (SpaceLine& part : parts_within(curve, kept)) section.lines.push_back(std::move(part));
+  section.triangles = filled(curves, box, (axis + 1) % 3, (axis + 2) % 3);
+  return section;
 }
 
 bool faces_eye(const FaceBox& box, int face, const Camera& camera) {

@@ -38,8 +38,12 @@ std::vector<SpaceLine> parts_within(const SpaceLine& line, std::span<const HalfS
 /// The half spaces that make the box, but for that of one face; -1: all.
 std::vector<HalfSpace> half_spaces(const FaceBox& box, int without = -1);
 
-/// Where a mesh meets the face, within the box.
-std::vector<SpaceLine> face_sections(const Mesh& mesh, const FaceBox& box, int face);
+/// Where a mesh meets a face.
+struct FaceSection {
+  std::vector<SpaceLine> lines;       ///< the membrane
+  std::vector<glm::dvec3> triangles;  ///< what it encloses, three points each; they overlap a little
+};
+FaceSection face_section(const Mesh& mesh, const FaceBox& box, int face);
 
 /// Does this face turn to the eye: is it in front of all that is in the box, or behind it?
 bool faces_eye(const FaceBox& box, int face, const Camera& camera);
