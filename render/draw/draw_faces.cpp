@@ -57,7 +57,8 @@ void Renderer::draw_faces(const Frame& frame, bool in_front) {
       glm::vec3 normal(0);
       normal[section.face / 2] = section.face % 2 == 1 ? 1 : -1;
       constexpr float paler = 0.4F;  // than the membrane: one tells inside from outside
-      const glm::vec3 own = linear(style.own_colour ? section.body->colour : white);
+      // Fields have no values in there.
+      const glm::vec3 own = linear(style.own_colour && !style.field ? section.body->colour : white);
       for (const glm::dvec3& point : section.shape.triangles) {
         positions.emplace_back(frame.camera.place(point));
         normals.push_back(normal);
@@ -88,8 +89,10 @@ void Renderer::draw_faces(const Frame& frame, bool in_front) {
   for (const Section& section : sections) {
     const Body& body = *section.body;
     if (frame.view.outline_width == 0 || section.shape.lines.empty()) continue;
-    const float half_width =
-        std::max(0.5F, detail_in(frame, body).outline * samples(frame.view, frame.view.outline_width / 2, 0.5));
+    // Of a line behind its body only the outer half is seen: as wide as the contour, which it goes on.
+    const bool covered = !in_front && !style.see_through;
+    const float width = detail_in(frame, body).outline * samples(frame.view, frame.view.outline_width, 1.0);
+    const float half_width = std::max(0.5F, covered ? width : width / 2);
     p.set("u_half_width", half_width);
     p.set("u_rim", vector_of(outline_colour(frame, body)));
     for (const SpaceLine& line : section.shape.lines) {
