@@ -389,6 +389,7 @@ void write_legend(Members& page, const ViewPanel& panel) {
 Settings page_settings(const Settings& settings, std::size_t vesicles) {
   Settings s = settings;
   s.view.views.clear();
+  s.view.faces = "whole";  // a page has one image of each vesicle
   s.view.style =
       sim::find_field(s.view.field).needs_neighbours && vesicles < 2 && !s.scene.cell.size ? "opaque" : "field";
   return s;

@@ -184,7 +184,8 @@ DrawnStills draw_stills(Studio& studio, const PictureSource& source, const std::
   for (const Still& still : stills) {
     sim::State state = boxed(settings.scene, state_at(trajectory, still.time));
     if (still.alone) state.vesicles.resize(1);
-    const ViewPanel panel = panel_of(still, {trajectory, plain}, painting, state);
+    ViewPanel panel = panel_of(still, {trajectory, plain}, painting, state);
+    if (still.alone) panel.view.faces = "whole";
     drawn.images.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
   return drawn;
