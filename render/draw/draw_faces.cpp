@@ -17,12 +17,14 @@ struct Section {
 };
 
 std::vector<Section> sections_of(const Frame& frame, bool in_front) {
+  constexpr double overlap = 0.05;  // px
+  const double length = overlap * 2 * frame.camera.half_height / frame.view.size[1];
   std::vector<Section> all;
   for (const Body& body : frame.bodies) {
     if (!crosses(body.mesh.position, *frame.faces)) continue;
     for (int face = 0; face < FaceBox::faces; ++face)
       if (faces_eye(*frame.faces, face, frame.camera) == in_front)
-        all.push_back({&body, face, face_section(body.mesh, *frame.faces, face)});
+        all.push_back({&body, face, face_section(body.mesh, *frame.faces, face, length)});
   }
   return all;
 }

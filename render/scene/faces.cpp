@@ -137,7 +137,8 @@ std::vector<SpaceLine> sections(const Mesh& mesh, int axis, double place) {
 
 /// What closed curves in a plane enclose, by the even-odd rule, within the rectangle: strips between all heights at
 /// which something begins or ends, cut at the curves. u, v: the axes in the plane.
-std::vector<dvec3> filled(const std::vector<SpaceLine>& curves, const FaceBox& box, glm::length_t u, glm::length_t v) {
+std::vector<dvec3> filled(const std::vector<SpaceLine>& curves, const FaceBox& box, glm::length_t u, glm::length_t v,
+                          double overlap) {
   struct Side {
     dvec3 low, high;  // by v
     double at(double height, glm::length_t axis) const {
@@ -161,7 +162,6 @@ std::vector<dvec3> filled(const std::vector<SpaceLine>& curves, const FaceBox& b
     }
   std::sort(heights.begin(), heights.end());
   std::vector<dvec3> triangles;
-  const double more = 1e-4 * (box.high[v] - box.low[v]);  // no sample falls between two strips
   for (std::size_t k = 0; k + 1 < heights.size(); ++k) {
     const double low = heights[k], high = heights[k + 1], middle = (low + high) / 2;
     std::vector<std::pair<double, const Side*>> across;
@@ -175,7 +175,7 @@ std::vector<dvec3> filled(const std::vector<SpaceLine>& curves, const FaceBox& b
         const double height = c < 2 ? low : high;
         corners[c] = side.low;
         corners[c][u] = std::clamp(side.at(height, u), box.low[u], box.high[u]);
-        corners[c][v] = c < 2 ? low - more : high + more;
+        corners[c][v] = c < 2 ? low - overlap : high + overlap;
       }
       if (corners[0][u] == corners[1][u] && corners[2][u] == corners[3][u]) continue;
       for (const std::size_t c : {0U, 1U, 2U, 2U, 1U, 3U}) triangles.push_back(corners[c]);
@@ -186,14 +186,14 @@ std::vector<dvec3> filled(const std::vector<SpaceLine>& curves, const FaceBox& b
 
 }  // namespace
 
-FaceSection face_section(const Mesh& mesh, const FaceBox& box, int face) {
+FaceSection face_section(const Mesh& mesh, const FaceBox& box, int face, double overlap) {
   const glm::length_t axis = face / 2;
   const std::vector<SpaceLine> curves = sections(mesh, face / 2, face % 2 == 1 ? box.high[axis] : box.low[axis]);
   const std::vector<HalfSpace> kept = half_spaces(box, face);
   FaceSection section;
   for (const SpaceLine& curve : curves)
     for (SpaceLine& part : parts_within(curve, kept)) section.lines.push_back(std::move(part));
-  section.triangles = filled(curves, box, (axis + 1) % 3, (axis + 2) % 3);
+  section.triangles = filled(curves, box, (axis + 1) % 3, (axis + 2) % 3, overlap);
   return section;
 }
 

@@ -41,9 +41,10 @@ std::vector<HalfSpace> half_spaces(const FaceBox& box, int without = -1);
 /// Where a mesh meets a face.
 struct FaceSection {
   std::vector<SpaceLine> lines;       ///< the membrane
-  std::vector<glm::dvec3> triangles;  ///< what it encloses, three points each; they overlap a little
+  std::vector<glm::dvec3> triangles;  ///< what it encloses within the box, three points each
 };
-FaceSection face_section(const Mesh& mesh, const FaceBox& box, int face);
+/// overlap: by which triangles reach into their neighbours, so that no sample falls between them.
+FaceSection face_section(const Mesh& mesh, const FaceBox& box, int face, double overlap = 0);
 
 /// Does this face turn to the eye: is it in front of all that is in the box, or behind it?
 bool faces_eye(const FaceBox& box, int face, const Camera& camera);

@@ -75,7 +75,7 @@ TEST_CASE("a line is kept where it lies in all half spaces, and a closed one sta
 TEST_CASE("a face cuts a sphere in a circle, and an edge and a corner of the box cut that") {
   const render::Mesh mesh = mesh_of(surfaces::sphere());
   const double r = 0.8;  // of the circle at a height of 0.6
-  // Chords of the mesh: shorter than arcs by some 1e-4. Strips of the fill overlap by 1e-4 of the box.
+  // Chords of the mesh: shorter than arcs by some 1e-4.
   const auto close = [](double value) { return Approx(value).epsilon(0.01); };
   for (int face = 0; face < render::FaceBox::faces; ++face) {
     INFO("face " << face);
