@@ -144,7 +144,8 @@ void Renderer::draw_outlines(const Frame& frame) {
                     glm::vec4(vector_of(outline_colour(frame, body)), width));
   }
   const Program& p = use_for_bodies("outline", frame, frame.faces ? "#define BOXED\n" : "");
-  set_box(p, frame);
+  // Where a membrane is seen edge-on at a face, pieces of its contour would stand out beside the line of its section.
+  set_box(p, frame, static_cast<double>(samples(frame.view, frame.view.outline_width, 1.0)) / framebuffer_->height());
   p.set("u_sample",
         glm::vec2(2.0F / static_cast<float>(framebuffer_->width()), 2.0F / static_cast<float>(framebuffer_->height())));
   hulls_.attribute(0, positions);

@@ -31,11 +31,16 @@ inline glm::vec3 depth_cue_in(const Frame& frame) {
   return {cue, (depth - away) / frame.camera.half_height, 2 * depth / frame.camera.half_height};
 }
 
-/// Of box.glsl.
-inline void set_box(const Program& program, const Frame& frame) {
+/// Of box.glsl. short_of: how far before the faces towards the eye things end, half heights of the picture.
+inline void set_box(const Program& program, const Frame& frame, double short_of = 0) {
   if (!frame.faces) return;
-  program.set("u_low", glm::vec3(frame.camera.place(frame.faces->low)));
-  program.set("u_high", glm::vec3(frame.camera.place(frame.faces->high)));
+  glm::dvec3 low = frame.camera.place(frame.faces->low), high = frame.camera.place(frame.faces->high);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (faces_eye(*frame.faces, 2 * axis, frame.camera)) low[axis] += short_of;
+    if (faces_eye(*frame.faces, 2 * axis + 1, frame.camera)) high[axis] -= short_of;
+  }
+  program.set("u_low", glm::vec3(low));
+  program.set("u_high", glm::vec3(high));
 }
 
 inline void set_camera(const Program& program, const Camera& camera) {
