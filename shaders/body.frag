@@ -13,10 +13,14 @@
 //   SPARSE      with GRID: vesicles so small that their lines fade to a few, or to none
 //   OCCLUDED    hollows and neighbours darken it
 //   DEPTH_CUE   fades into the ground with the distance
+//   BOXED       ends at the faces of a box
 in vec3 v_eye, v_normal, v_label;
 flat in vec3 v_paint;  // linear
 #ifdef CUT_BY_SAMPLE
 in float v_cut;
+#endif
+#ifdef BOXED
+in vec3 v_place;
 #endif
 out vec4 f_colour;
 #ifdef GHOST
@@ -221,6 +225,9 @@ void main() {
 #endif
 #ifdef CUT_BY_SAMPLE
   if (v_cut > 0.0) discard;  // last: derivatives need the neighbours
+#endif
+#ifdef BOXED
+  if (outside_box(v_place)) discard;
 #endif
 #ifdef GHOST
 #ifdef DEPTH_CUE

@@ -36,6 +36,9 @@ flat out float v_contour_share;
 layout(location = 11) in vec2 a_light;  // shares of sky and key light that come here
 out vec2 v_light;
 #endif
+#ifdef BOXED
+out vec3 v_place;
+#endif
 uniform mat4 u_view, u_projection;
 out vec3 v_eye;     // position in eye space
 out vec3 v_normal;  // eye space
@@ -48,6 +51,9 @@ void main() {
   v_eye = eye.xyz;
   v_normal = mat3(u_view) * a_normal;
   v_label = a_label;
+#ifdef BOXED
+  v_place = a_position;
+#endif
   v_paint = a_paint.rgb;
 #ifdef TRACERS
   v_dot = a_dot;

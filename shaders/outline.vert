@@ -8,12 +8,18 @@ uniform vec2 u_sample;  // clip units
 uniform float u_more;   // samples added to the width
 flat out vec3 v_outline;
 out float v_near;
+#ifdef BOXED
+out vec3 v_place;
+#endif
 void main() {
   vec4 eye = u_view * vec4(a_position, 1.0);
   vec4 clip = u_projection * eye;
   vec2 direction = (mat3(u_view) * a_normal).xy;
   clip.xy += (a_outline.w + u_more) * u_sample * clip.w * direction / max(length(direction), 1e-6);
   v_outline = a_outline.rgb;
+#ifdef BOXED
+  v_place = a_position;
+#endif
   v_near = near_share(eye.z);
   gl_Position = clip;
 }

@@ -5,6 +5,7 @@
 #include "app/base/version.h"
 #include "app/export/json_members.h"
 #include "app/export/page_series.h"
+#include "app/pictures/cell_images.h"
 #include "app/pictures/flow_overlays.h"
 #include "app/pictures/instants.h"
 #include "app/pictures/overlays.h"
@@ -100,7 +101,7 @@ class Recorder {
 
   void add(const sim::State& unwrapped, const Settings& settings) {
     const sim::State state = boxed(settings.scene, unwrapped);
-    const render::StateSummary summary = render::summarize(state);
+    const render::StateSummary summary = summary_of(settings.scene, state);
     const render::Camera camera = render::make_camera(panel_.framing, panel_.framing.moment(summary));
     sim::Surroundings surroundings(sim::cell_at(settings.scene, state.time));
     for (std::size_t v = 0; v < all_.size(); ++v) {
@@ -388,6 +389,7 @@ void write_legend(Members& page, const ViewPanel& panel) {
 Settings page_settings(const Settings& settings, std::size_t vesicles) {
   Settings s = settings;
   s.view.views.clear();
+  s.view.faces = "whole";  // a page has one image of each vesicle
   s.view.style =
       sim::find_field(s.view.field).needs_neighbours && vesicles < 2 && !s.scene.cell.size ? "opaque" : "field";
   return s;

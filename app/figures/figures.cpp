@@ -4,6 +4,7 @@
 #include "app/base/printable.h"
 #include "app/figures/phase_diagram.h"
 #include "app/figures/plots.h"
+#include "app/pictures/cell_images.h"
 #include "app/pictures/flow_picture.h"
 #include "app/pictures/pictures.h"
 #include "app/scene/scene_text.h"
@@ -50,6 +51,15 @@ void add_stills(render::FigureInput& input, const FigureSource& source, const Op
   input.camera = settings.view.camera;
   const double pixels = render::dots_per_inch(input.parameters) / 72;
   input.shows_field = render::find_style(settings.view.style).field || settings.view.colour_by != "order";
+  // In a periodic cell vesicles are shown in the box, wherever they have drifted to.
+  render::ViewParameters cut = settings.view;
+  cut.faces = "cut";
+  cut.copies = {0, 0, 0};
+  input.box = faces_of(settings.scene, cut);
+  if (input.box && settings.view.faces == "whole") {  // they stand out of it
+    input.box->low -= input.length;
+    input.box->high += input.length;
+  }
   constexpr int least = 16;  // px
   std::vector<Still> stills;
   const render::Sheet sheet = render::sheet_layout(input);

@@ -1,7 +1,7 @@
 #include "app/pictures/flow_overlays.h"
 
+#include "app/pictures/cell_images.h"
 #include "app/pictures/flow_picture.h"
-#include "app/pictures/instants.h"
 
 #include "render/core/paint.h"
 #include "render/core/places.h"
@@ -98,13 +98,25 @@ std::vector<render::Shadow> shadows_of(const sim::Scene& scene, const render::Vi
   // Half the distance of these points on a sphere, which are 18 degrees apart, as a share of its radius.
   constexpr double between = 0.16;
   const std::size_t each = summary.points_of_each();
-  std::vector<sim::Vec3> middles;
-  for (const glm::dvec3& centroid : summary.centroids) middles.push_back(render::to_sim(centroid));
+  std::vector<Whereabouts> places;
+  for (std::size_t v = 0; v < summary.centroids.size(); ++v) {
+    Whereabouts& place = places.emplace_back();
+    place.middle = render::to_sim(summary.centroids[v]);
+    place.bounds = {place.middle, place.middle};
+    for (std::size_t k = v * each; k < (v + 1) * each; ++k) {
+      const sim::Vec3 point = render::to_sim(summary.point(k));
+      place.bounds = sim::united(place.bounds, {point, point});
+    }
+  }
+  const std::optional<render::FaceBox> faces = faces_of(scene, view);
   std::vector<render::Shadow> shadows;
-  for (const Shown& shown : shown_of(scene, view, middles, summary.time)) {
+  for (const Shown& shown : shown_of(scene, view, places, summary.time)) {
     std::vector<glm::dvec3> points;
-    for (std::size_t k = 0; k < each; ++k)
-      points.push_back(summary.point(shown.vesicle * each + k) + render::to_glm(shown.shift));
+    for (std::size_t k = 0; k < each; ++k) {
+      const glm::dvec3 point = summary.point(shown.vesicle * each + k) + render::to_glm(shown.shift);
+      if (!faces || faces->holds(point)) points.push_back(point);
+    }
+    if (points.empty()) continue;
     shadows.push_back(render::shadow_of(camera, points));
     shadows.back().reach = between * shadows.back().radius;
   }

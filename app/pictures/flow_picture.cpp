@@ -1,7 +1,7 @@
 #include "app/pictures/flow_picture.h"
 
 #include "app/base/interrupt.h"
-#include "app/pictures/instants.h"
+#include "app/pictures/cell_images.h"
 #include "app/pictures/scales.h"
 
 #include "render/scene/detail.h"
@@ -161,11 +161,15 @@ WindowMembranes membranes_in(const sim::Scene& scene, const sim::State& state, c
   const sim::Vec3 size = *scene.cell.size;
   const double reach = std::max({-request.x.low, request.x.high, -request.y.low, request.y.high});
   render::ViewParameters view;
+  view.faces = "whole";
   for (std::size_t d = 0; d < 3; ++d) {
     const auto axis = static_cast<Eigen::Index>(d);
     view.copies[d] = 1 + static_cast<int>(std::ceil((std::abs(request.plane.origin[axis]) + reach) / size[axis] - 0.5));
   }
-  for (const Shown& s : shown_of(scene, view, state)) {
+  std::vector<Whereabouts> places;
+  for (std::size_t v = 0; v < state.vesicles.size(); ++v)
+    places.push_back(whereabouts_of(state.vesicles[v], render::bounds_of(sketches[v])));
+  for (const Shown& s : shown_of(scene, view, places, state.time)) {
     const render::Sketch& sketch = sketches[s.vesicle];
     const sim::Vec3 from = render::to_sim(sketch.centre) + s.shift - request.plane.origin;
     const double x = from.dot(request.plane.right), y = from.dot(request.plane.up), r = sketch.radius;

@@ -4,7 +4,6 @@
 
 #include "app/scene/settings.h"
 
-#include "render/scene/frame.h"
 #include "sim/trajectory/trajectory.h"
 
 #include <cstdint>
@@ -15,24 +14,6 @@ namespace app {
 /// The state at any time of a trajectory: cubic Hermite interpolation between saved states; the first and last state
 /// outside.
 sim::State state_at(const sim::TrajectoryReader&, double time);
-
-/// The state as a picture of a periodic cell shows it: each vesicle by that image whose centre is in the box about the
-/// origin, which moves as the flow does there. Without a cell, the state itself.
-sim::State boxed(const sim::Scene&, sim::State);
-/// A vesicle of such a state, moved by this much.
-struct Shown {
-  std::size_t vesicle;
-  sim::Vec3 shift;
-};
-/// What a picture shows of such a state: all vesicles, and of view.copies those images whose centres are in the box
-/// that is larger by so many cells on each side.
-std::vector<Shown> shown_of(const sim::Scene&, const render::ViewParameters&, const sim::State&);
-/// The same of vesicles whose middles are known.
-std::vector<Shown> shown_of(const sim::Scene&, const render::ViewParameters&, const std::vector<sim::Vec3>& middles,
-                            double time);
-sim::VesicleState moved(sim::VesicleState, const sim::Vec3& shift);
-/// Edges of the box; none without a cell.
-std::vector<render::FlowLines::Line> edges_of_cell(const sim::Scene&);
 
 /// Saved states, the first and the last among them, from which a movie is framed and the range of its field is taken:
 /// a few hundred are enough.

@@ -1,5 +1,6 @@
 #include "app/pictures/pictures.h"
 
+#include "app/pictures/cell_images.h"
 #include "app/pictures/flow_overlays.h"
 #include "app/pictures/instants.h"
 #include "app/pictures/overlays.h"
@@ -31,21 +32,27 @@ render::Sketch shifted(render::Sketch sketch, const glm::dvec3& shift) {
 /// A mesh for each vesicle and each copy that may be seen, as fine as the picture shows it, with its colour and field,
 /// opened where the style opens it. centre: of all.
 std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const sim::State& state,
-                                    const std::vector<Shown>& shown, const render::Camera& camera,
-                                    const glm::dvec3& centre) {
+                                    const render::Camera& camera, const glm::dvec3& centre) {
+  const sim::Scene& scene = p.source.settings.scene;
+  const std::optional<render::FaceBox> faces = faces_of(scene, p.view);
   const bool full = p.view.detail == "full";
   const render::StyleRow& style = render::find_style(p.view.style);
   std::vector<render::Sketch> own, sketches;
-  for (const sim::VesicleState& vesicle : state.vesicles) own.push_back(render::sketch_of(vesicle));
+  std::vector<Whereabouts> places;
+  for (const sim::VesicleState& vesicle : state.vesicles) {
+    own.push_back(render::sketch_of(vesicle));
+    places.push_back(whereabouts_of(vesicle, render::bounds_of(own.back())));
+  }
+  const std::vector<Shown> shown = shown_of(scene, p.view, places, state.time);
   for (const Shown& s : shown) sketches.push_back(shifted(own[s.vesicle], render::to_glm(s.shift)));
   std::vector<bool> hidden(sketches.size(), false);
-  if (!style.see_through && !style.cut && sketches.size() > 2) hidden = render::hidden(sketches, camera, p.view);
+  if (!style.see_through && !style.cut && sketches.size() > 2) hidden = render::hidden(sketches, camera, p.view, faces);
   const sim::Vec3 plane = sim::Vec3(centre.x, centre.y, centre.z) + p.view.cut_offset * p.view.cut_normal.normalized();
   std::vector<render::Occluder> occluders;
   if (style.occluded && p.view.occlusion > 0)
-    for (const render::Sketch& sketch : sketches) occluders.push_back(render::occluder_of(sketch));
+    for (const render::Sketch& sketch : sketches) occluders.push_back(render::occluder_of(sketch, faces));
   std::vector<render::Body> bodies;
-  sim::Surroundings surroundings(sim::cell_at(p.source.settings.scene, state.time));
+  sim::Surroundings surroundings(sim::cell_at(scene, state.time));
   std::vector<std::optional<sim::Coefficients>> fields(state.vesicles.size());
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const render::Sketch& sketch = sketches[k];
@@ -73,21 +80,23 @@ std::vector<render::Body> bodies_of(Studio& studio, const ViewPanel& p, const si
 }
 
 render::Frame frame_of(Studio& studio, const ViewPanel& p, const sim::State& state) {
-  const render::StateSummary summary = render::summarize(state);
+  const sim::Scene& scene = p.source.settings.scene;
+  const render::StateSummary summary = summary_of(scene, state);
   const render::Moment moment = p.framing.moment(summary);
   render::Frame frame;
   frame.view = p.view;
   frame.camera = render::make_camera(p.framing, moment);
-  const std::vector<Shown> shown = shown_of(p.source.settings.scene, p.view, state);
-  frame.bodies = bodies_of(studio, p, state, shown, frame.camera, summary.centroid);
-  frame.vesicles = shown.size();
+  frame.bodies = bodies_of(studio, p, state, frame.camera, summary.centroid);
+  frame.vesicles = state.vesicles.size() * cells_shown(scene, p.view);
+  frame.faces = faces_of(scene, p.view);
   frame.legend = p.painting.legend;
   frame.arrows = arrows_of(p, summary);
   if (p.view.flow_profile) frame.profile = profile_of(p, frame.camera, state.time);
   if (p.view.inset) frame.inset = inset_of(p, state, frame.camera, moment.centre);
   frame.captions = captions_of(p, state.time);
   frame.flow_lines = flow_lines_of(studio.plans, p, state, frame.camera, render::lay_out(frame, studio.font).boxes());
-  for (render::FlowLines::Line& edge : edges_of_cell(p.source.settings.scene)) frame.flow_lines.lines.push_back(edge);
+  if (!frame.faces || cells_shown(scene, p.view) > 1)
+    for (render::FlowLines::Line& edge : edges_of_cell(scene)) frame.flow_lines.lines.push_back(edge);
   return frame;
 }
 
@@ -175,7 +184,8 @@ DrawnStills draw_stills(Studio& studio, const PictureSource& source, const std::
   for (const Still& still : stills) {
     sim::State state = boxed(settings.scene, state_at(trajectory, still.time));
     if (still.alone) state.vesicles.resize(1);
-    const ViewPanel panel = panel_of(still, {trajectory, plain}, painting, state);
+    ViewPanel panel = panel_of(still, {trajectory, plain}, painting, state);
+    if (still.alone) panel.view.faces = "whole";
     drawn.images.push_back(render::draw_frame(studio.renderer, frame_of(studio, panel, state)));
   }
   return drawn;

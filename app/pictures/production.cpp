@@ -2,6 +2,7 @@
 
 #include "app/base/printable.h"
 #include "app/base/version.h"
+#include "app/pictures/cell_images.h"
 #include "app/pictures/flow_overlays.h"
 #include "app/pictures/instants.h"
 #include "app/pictures/overlays.h"
@@ -39,7 +40,7 @@ SourceMeasures measures_of(const PictureSource& source, bool titled, std::option
   std::set<double> laid;
   for (const std::int64_t i : chosen) {
     const sim::State state = boxed(settings.scene, trajectory.state(i));
-    m.summaries.push_back(render::summarize(state));
+    m.summaries.push_back(summary_of(settings.scene, state));
     for (const sim::VesicleState& v : state.vesicles)
       if (v.labels_laid > 0) laid.insert(v.labels_laid_time);
   }
@@ -100,12 +101,27 @@ Production arranged(const render::ViewParameters& first, std::size_t sources, st
   return production;
 }
 
+/// Of what is cut at the faces nothing reaches out of their box.
+render::StateSummary corners_alone(const render::FaceBox& box, double time) {
+  render::StateSummary corners;
+  corners.time = time;
+  corners.centroids = {glm::dvec3(0)};
+  for (int k = 0; k < 8; ++k)
+    corners.points.emplace_back((k & 1) ? box.high.x : box.low.x, (k & 2) ? box.high.y : box.low.y,
+                                (k & 4) ? box.high.z : box.low.z);
+  return corners;
+}
+
 /// In a periodic cell, the corners of all that is drawn stand for one vesicle more, so that the picture holds it: of
 /// the box, or of its copies and of what reaches out of them as the vesicles reach out of the box.
 std::vector<render::StateSummary> with_cell(const PictureSource& source, const render::ViewParameters& view,
                                             std::vector<render::StateSummary> summaries) {
   const std::optional<sim::Vec3>& size = source.settings.scene.cell.size;
   if (!size) return summaries;
+  if (const std::optional<render::FaceBox> faces = faces_of(source.settings.scene, view)) {
+    for (render::StateSummary& s : summaries) s = corners_alone(*faces, s.time);
+    return summaries;
+  }
   const sim::Vec3 number(view.copies[0], view.copies[1], view.copies[2]);
   for (render::StateSummary& s : summaries) {
     const std::size_t points = s.points_of_each();

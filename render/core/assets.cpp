@@ -27,10 +27,11 @@ std::string shader_text(std::string_view name, const std::filesystem::path& fold
 }
 
 std::vector<std::string> shader_libraries(std::string_view shader) {
-  if (shader == "body.vert" || shader == "outline.vert") return {"distance.glsl"};
-  if (shader == "body.frag") return {"light.glsl", "ground.glsl", "lines.glsl"};
-  if (shader == "arrow.frag") return {"light.glsl", "ground.glsl"};
-  if (shader == "ground.frag" || shader == "outline.frag") return {"ground.glsl"};
+  if (shader == "body.vert" || shader == "outline.vert" || shader == "section.vert") return {"distance.glsl"};
+  if (shader == "body.frag") return {"light.glsl", "ground.glsl", "box.glsl", "lines.glsl"};
+  if (shader == "arrow.frag" || shader == "section.frag") return {"light.glsl", "ground.glsl"};
+  if (shader == "outline.frag") return {"ground.glsl", "box.glsl"};
+  if (shader == "ground.frag") return {"ground.glsl"};
   return {};
 }
 

@@ -13,6 +13,7 @@ inline constexpr std::array<std::string_view, 2> projection_names{"perspective",
 inline constexpr std::array<std::string_view, 2> line_names{"material", "grid"};
 inline constexpr std::array<std::string_view, 2> plot_places{"below", "beside"};
 inline constexpr std::array<std::string_view, 2> detail_names{"auto", "full"};
+inline constexpr std::array<std::string_view, 2> face_names{"cut", "whole"};
 inline constexpr std::array<std::string_view, 2> cut_names{"each", "common"};
 inline constexpr std::array<std::string_view, 3> streamline_names{"off", "laboratory", "vesicles"};
 inline constexpr std::array<std::string_view, 1> range_words{"shared"};
@@ -75,6 +76,7 @@ struct ViewParameters {
   double occlusion = 1;
   std::string detail = "auto";
   std::vector<int> copies{0, 0, 0};  ///< on each side of a periodic cell, along x, y, z
+  std::string faces = "cut";         ///< of a periodic cell
 };
 
 template <class P, class V>
@@ -275,6 +277,13 @@ void visit(P& p, V&& v) {
               .minimum = 0,
               .maximum = 10},
     p.copies);
+  v(Parameter{.name = "faces",
+              .unit = "",
+              .meaning =
+                  "cut: vesicles end at the faces of a periodic cell and go on at the opposite ones; whole: those "
+                  "whose centre is in it, which move to the opposite face from one frame to the next",
+              .choices = face_names},
+    p.faces);
 }
 
 /// [[key_frame]]: where the camera is at one time; between key frames it moves smoothly.

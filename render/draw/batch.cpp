@@ -56,7 +56,8 @@ Variant variant_of(const Frame& frame, const Body& body, const Detail& detail) {
           .sparse = detail.lines < 1,
           .tracers = style.tracers && frame.view.tracers && !body.mesh.tracers.empty() && detail.tracers > 0,
           .sign_dots = style.field && frame.legend && frame.legend->mirrored && frame.view.sign_dots,
-          .occluded = style.occluded && !body.mesh.light.empty()};
+          .occluded = style.occluded && !body.mesh.light.empty(),
+          .boxed = frame.faces && crosses(body.mesh.position, *frame.faces)};
 }
 
 Colour outline_colour(const Frame& frame, const Body& body) {

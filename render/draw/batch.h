@@ -33,10 +33,11 @@ struct Variant {
   bool tracers = true;
   bool sign_dots = false;
   bool occluded = false;
+  bool boxed = false;  ///< ends at the faces of Frame::faces
   /// An order for maps.
   friend bool operator<(const Variant& a, const Variant& b) {
-    return std::tie(a.grid, a.sparse, a.tracers, a.sign_dots, a.occluded) <
-           std::tie(b.grid, b.sparse, b.tracers, b.sign_dots, b.occluded);
+    return std::tie(a.grid, a.sparse, a.tracers, a.sign_dots, a.occluded, a.boxed) <
+           std::tie(b.grid, b.sparse, b.tracers, b.sign_dots, b.occluded, b.boxed);
   }
 };
 Variant variant_of(const Frame& frame, const Body& body, const Detail& detail);

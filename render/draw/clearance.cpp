@@ -26,9 +26,10 @@ std::vector<Shadow> shadows(const Frame& frame) {
     for (int j = 0; j < columns; j += stride)
       for (int i = 0; i < rings; i += stride) {
         const int point = j * rings + i;
-        points.emplace_back(body.mesh.position[static_cast<std::size_t>(point)]);
+        const glm::dvec3& place = body.mesh.position[static_cast<std::size_t>(point)];
+        if (!frame.faces || frame.faces->holds(place)) points.emplace_back(place);
       }
-    all.push_back(shadow_of(frame.camera, points));
+    if (!points.empty()) all.push_back(shadow_of(frame.camera, points));
   }
   return all;
 }

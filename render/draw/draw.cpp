@@ -30,6 +30,7 @@ Renderer::Renderer(const GlChoice& choice, std::filesystem::path shader_dir)
       nothing_(context_.gl()),
       bodies_(context_.gl()),
       hulls_(context_.gl()),
+      sections_(context_.gl()),
       ribbons_(context_.gl()),
       arrows_(context_.gl()),
       beads_(context_.gl()),
@@ -185,7 +186,9 @@ Image draw_frame(Renderer& renderer, const Frame& frame) {
   renderer.draw_ground(frame);
   renderer.draw_arrows(frame);
   if (!find_style(frame.view.style).cut) renderer.draw_flow_lines(frame);
+  renderer.draw_faces(frame, false);
   renderer.draw_bodies(frame);
+  renderer.draw_faces(frame, true);
   Image image = renderer.finish(frame);
   draw_captions(image, renderer.font_, frame);
   return image;

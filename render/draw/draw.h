@@ -36,6 +36,8 @@ class Renderer {
   void draw_ghosts(const Frame&);
   void draw_cut_edges(const Frame&);
   void draw_flow_lines(const Frame&);
+  /// Edges of frame.faces and sections of bodies by them: of the faces in front of all bodies, or of those behind.
+  void draw_faces(const Frame&, bool in_front);
   /// An arrow of the flow along the line of sight.
   struct EndOn {
     glm::dvec3 place;
@@ -61,7 +63,7 @@ class Renderer {
   GlContext context_;
   std::filesystem::path shader_dir_;
   std::map<std::string, Program> programs_;  ///< by name and defines
-  VertexArray nothing_, bodies_, hulls_, ribbons_, arrows_, beads_;
+  VertexArray nothing_, bodies_, hulls_, sections_, ribbons_, arrows_, beads_;
   Palette palette_;
   std::optional<Framebuffer> framebuffer_;
   Image samples_;

@@ -31,13 +31,12 @@ std::vector<std::size_t> front_to_back(const Frame& frame) {
 }  // namespace
 
 const Program& Renderer::use_for_bodies(const std::string& name, const Frame& frame, const std::string& defines) {
-  const double cue = depth_cue_of(frame.view, frame.vesicles > 0 ? frame.vesicles : frame.bodies.size());
-  const Program& p = program(name, defines + (cue > 0 ? "#define DEPTH_CUE\n" : ""));
+  const glm::vec3 cue = depth_cue_in(frame);
+  const Program& p = program(name, defines + (cue.x > 0 ? "#define DEPTH_CUE\n" : ""));
   p.use();
   set_camera(p, frame.camera);
-  if (cue > 0) {
-    const double away = glm::distance(frame.camera.eye, frame.camera.target), depth = frame.camera.depth;
-    p.set("u_cue", glm::vec3(cue, (depth - away) / frame.camera.half_height, 2 * depth / frame.camera.half_height));
+  if (cue.x > 0) {
+    p.set("u_cue", cue);
     p.set("u_height", static_cast<float>(framebuffer_->height()));
     set_ground(p, frame);
   }
@@ -64,7 +63,9 @@ void Renderer::draw_batch(const Frame& frame, const Batch& batch, const Variant&
   const StyleRow& style = find_style(frame.view.style);
   const Program& p = use_for_bodies("body", frame,
                                     body_defines(style, frame.view, variant.grid, variant.sparse, variant.tracers,
-                                                 variant.sign_dots, variant.occluded));
+                                                 variant.sign_dots, variant.occluded) +
+                                        (variant.boxed ? "#define BOXED\n" : ""));
+  set_box(p, frame);
   if (style.field) {
     palette_.bind();
     p.set("u_map", 0);
@@ -108,6 +109,7 @@ void Renderer::draw_ghosts(const Frame& frame) {
     variant.grid = variant.grid || own.grid;
     variant.sparse = variant.sparse || own.sparse;
     variant.tracers = variant.tracers || own.tracers;
+    variant.boxed = variant.boxed || own.boxed;
   }
   Batch batch;
   for (std::size_t k = 0; k < frame.bodies.size(); ++k)
@@ -141,7 +143,9 @@ void Renderer::draw_outlines(const Frame& frame) {
     outlines.insert(outlines.end(), body.mesh.position.size(),
                     glm::vec4(vector_of(outline_colour(frame, body)), width));
   }
-  const Program& p = use_for_bodies("outline", frame, "");
+  const Program& p = use_for_bodies("outline", frame, frame.faces ? "#define BOXED\n" : "");
+  // Where a membrane is seen edge-on at a face, pieces of its contour would stand out beside the line of its section.
+  set_box(p, frame, static_cast<double>(samples(frame.view, frame.view.outline_width, 1.0)) / framebuffer_->height());
   p.set("u_sample",
         glm::vec2(2.0F / static_cast<float>(framebuffer_->width()), 2.0F / static_cast<float>(framebuffer_->height())));
   hulls_.attribute(0, positions);

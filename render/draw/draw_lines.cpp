@@ -135,7 +135,13 @@ void Renderer::draw_cut_edges(const Frame& frame) {
     p.set("u_colour", vector_of({0.5 + 0.5 * body.colour.r, 0.5 + 0.5 * body.colour.g, 0.5 + 0.5 * body.colour.b}));
     p.set("u_rim", vector_of(outline_colour(frame, body)));
     for (const std::vector<glm::dvec3>& edge : body.cut->edges) {
-      draw_ribbon(frame.camera, edge, true, half_width + 1, 0.004 * body.mesh.area_radius);
+      const double nearer = 0.004 * body.mesh.area_radius;
+      if (!frame.faces) {
+        draw_ribbon(frame.camera, edge, true, half_width + 1, nearer);
+        continue;
+      }
+      for (const SpaceLine& part : parts_within({edge, true}, half_spaces(*frame.faces)))
+        draw_ribbon(frame.camera, part.points, part.closed, half_width + 1, nearer);
     }
   }
   gl.Enable(GL_CULL_FACE);

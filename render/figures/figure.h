@@ -90,6 +90,7 @@ struct Diagram {
 
 struct FigureInput {
   std::vector<sim::State> states;   ///< those to show
+  std::optional<FaceBox> box = {};  ///< of a sheet: what each panel holds; none: the vesicles of its state
   std::vector<std::string> labels;  ///< one per vesicle, for the legend; may be empty
   std::vector<Series> series;       ///< of "time-series" and "inclination"
   std::vector<Plot> plots;          ///< for kinds drawn from plots

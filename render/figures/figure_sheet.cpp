@@ -19,15 +19,23 @@ struct Extent {
   Eigen::Vector2d low, high;
 };
 
-Extent extent_of(const sim::State& state, const ViewAxes& axes) {
+glm::dvec3 corner_of(const FaceBox& box, int k) {
+  return {(k & 1) ? box.high.x : box.low.x, (k & 2) ? box.high.y : box.low.y, (k & 4) ? box.high.z : box.low.z};
+}
+
+Extent extent_of(const sim::State& state, const std::optional<FaceBox>& box, const ViewAxes& axes) {
   Extent e{Eigen::Vector2d::Constant(1e300), Eigen::Vector2d::Constant(-1e300)};
-  const StateSummary summary = summarize(state);
-  for (std::size_t k = 0; k < summary.points.size(); ++k) {
-    const glm::dvec3 point = summary.point(k);
+  const auto add = [&](const glm::dvec3& point) {
     const Eigen::Vector2d p(glm::dot(point, axes.right), glm::dot(point, axes.up));
     e.low = e.low.cwiseMin(p);
     e.high = e.high.cwiseMax(p);
+  };
+  if (box) {
+    for (int k = 0; k < 8; ++k) add(corner_of(*box, k));
+    return e;
   }
+  const StateSummary summary = summarize(state);
+  for (std::size_t k = 0; k < summary.points.size(); ++k) add(summary.point(k));
   return e;
 }
 
@@ -44,7 +52,7 @@ SheetNeeds needs_of(const FigureInput& input, const ViewAxes& axes) {
   SheetNeeds needs;
   Eigen::Vector2d largest = Eigen::Vector2d::Zero();
   for (const sim::State& state : input.states) {
-    needs.extents.push_back(extent_of(state, axes));
+    needs.extents.push_back(extent_of(state, input.box, axes));
     largest = largest.cwiseMax(needs.extents.back().high - needs.extents.back().low);
   }
   const double margin = 0.10 * largest.y() + 0.15 * input.length;

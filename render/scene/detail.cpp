@@ -76,6 +76,13 @@ Sketch sketch_of(const sim::VesicleState& state) {
   return sketch;
 }
 
+std::array<glm::dvec3, 2> bounds_of(const Sketch& sketch) {
+  glm::dvec3 low = sketch.points.front(), high = low;
+  for (const glm::dvec3& p : sketch.points) low = glm::min(low, p), high = glm::max(high, p);
+  const double beyond = 2 * sketch.sagitta;  // between the points
+  return {low - beyond, high + beyond};
+}
+
 MeshLevels::MeshLevels(int finest) {
   for (const int latitudes : {10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 48, 64})
     if (latitudes < finest) plans_.push_back(std::make_shared<const MeshPlan>(latitudes, 2 * latitudes));

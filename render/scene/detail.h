@@ -6,6 +6,7 @@
 #include "render/scene/camera.h"
 #include "render/scene/mesh.h"
 
+#include <array>
 #include <optional>
 
 namespace render {
@@ -36,6 +37,8 @@ struct Sketch {
   double sagitta = 0;             ///< largest of an edge
 };
 Sketch sketch_of(const sim::VesicleState& state);
+/// Opposite corners of a box along the axes that holds the vesicle.
+std::array<glm::dvec3, 2> bounds_of(const Sketch& sketch);
 
 /// The meshes to choose from, each built once.
 class MeshLevels {

@@ -5,6 +5,7 @@
 #include "render/core/palette.h"
 #include "render/core/parameters.h"
 #include "render/scene/camera.h"
+#include "render/scene/faces.h"
 #include "render/scene/mesh.h"
 
 #include <optional>
@@ -86,8 +87,9 @@ struct Inset {
 };
 
 struct Frame {
-  std::vector<Body> bodies;  ///< those that may be seen
-  std::size_t vesicles = 0;  ///< of the state; 0: as many as bodies
+  std::vector<Body> bodies;      ///< those that may be seen
+  std::size_t vesicles = 0;      ///< of the state; 0: as many as bodies
+  std::optional<FaceBox> faces;  ///< bodies end there, and its edges are drawn
   Camera camera;
   ViewParameters view;
   Captions captions;

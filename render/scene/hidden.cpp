@@ -108,7 +108,8 @@ void add(Cover& cover, Patch& patch, int reach) {
 
 }  // namespace
 
-std::vector<bool> hidden(std::span<const Sketch> sketches, const Camera& camera, const ViewParameters& view) {
+std::vector<bool> hidden(std::span<const Sketch> sketches, const Camera& camera, const ViewParameters& view,
+                         const std::optional<FaceBox>& faces) {
   constexpr double cells_high = 720;
   const int width = view.size[0], height = view.size[1];
   const double cell = std::max(1.0, height / cells_high);
@@ -144,6 +145,7 @@ std::vector<bool> hidden(std::span<const Sketch> sketches, const Camera& camera,
     const int inside = static_cast<int>(std::ceil(std::max(error / cell, 1.0)));
     Patch patch = patch_of(corners, std::max(margin, inside));
     result[k] = is_behind(cover, patch, margin, nearest);
+    if (faces && crosses(bounds_of(sketch), *faces)) continue;
     if (!result[k]) add(cover, patch, inside);
   }
   return result;

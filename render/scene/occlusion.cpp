@@ -18,11 +18,19 @@ std::size_t index_of(int i, int j) {
   return static_cast<std::size_t>((j + net_columns) % net_columns) * net_rings + static_cast<std::size_t>(i);
 }
 
-void add(Discs& discs, const glm::dvec3& place, const glm::dvec3& area) {
-  const double size = glm::length(area);
+// The share of a disc of this area that is in the box, smoothly from 0 to 1 while it comes in.
+double share_inside(const std::optional<FaceBox>& faces, const glm::dvec3& place, double size) {
+  if (!faces) return 1;
+  const glm::dvec3 deep = glm::min(place - faces->low, faces->high - place);
+  const double radius = std::sqrt(size / std::numbers::pi);
+  return glm::smoothstep(-radius, radius, std::min({deep.x, deep.y, deep.z}));
+}
+
+void add(Discs& discs, const glm::dvec3& place, const glm::dvec3& area, const std::optional<FaceBox>& faces) {
+  const double whole = glm::length(area), size = whole * share_inside(faces, place, whole);
   if (!(size > 0)) return;
   discs.places.push_back(place);
-  discs.normals.push_back(area / size);
+  discs.normals.push_back(area / whole);
   discs.areas.push_back(size);
 }
 
@@ -77,11 +85,11 @@ struct Values {
 
 }  // namespace
 
-Occluder occluder_of(const Sketch& sketch) {
+Occluder occluder_of(const Sketch& sketch, const std::optional<FaceBox>& faces) {
   Occluder occluder;
   for (int j = 0; j < net_columns; ++j)
     for (int i = 1; i < net_rings - 1; ++i)
-      add(occluder.fine, sketch.points[index_of(i, j)], sketch.areas[index_of(i, j)]);
+      add(occluder.fine, sketch.points[index_of(i, j)], sketch.areas[index_of(i, j)], faces);
   for (int j = 0; j < net_columns; j += 2)
     for (int i = 0; i < net_rings - 1; i += 2) {
       glm::dvec3 place(0), area(0);
@@ -92,7 +100,7 @@ Occluder occluder_of(const Sketch& sketch) {
         area += sketch.areas[k];
         sum += size;
       }
-      if (sum > 0) add(occluder.coarse, place / sum, area);
+      if (sum > 0) add(occluder.coarse, place / sum, area, faces);
     }
   return occluder;
 }

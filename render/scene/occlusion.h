@@ -5,6 +5,7 @@
 #pragma once
 
 #include "render/scene/detail.h"
+#include "render/scene/faces.h"
 
 namespace render {
 
@@ -16,7 +17,8 @@ struct Discs {
 struct Occluder {
   Discs fine, coarse;  ///< 11 x 24, and a quarter of that
 };
-Occluder occluder_of(const Sketch& sketch);
+/// What the faces cut off hides no light.
+Occluder occluder_of(const Sketch& sketch, const std::optional<FaceBox>& faces = {});
 
 /// Sets mesh.light of vesicle `self`. radius: of the vesicle in px; small ones get by with coarse discs.
 void shade(Mesh& mesh, std::size_t self, std::span<const Sketch> sketches, std::span<const Occluder> occluders,

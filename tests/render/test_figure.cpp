@@ -79,6 +79,25 @@ std::vector<std::vector<std::string>> table(const std::string& csv) {
 
 }  // namespace
 
+TEST_CASE("panels of a sheet of a periodic cell hold its box, wherever vesicles have drifted to") {
+  render::FigureInput in = input();
+  in.camera = "flow-gradient";
+  in.box = render::FaceBox{{-3, -2, -2}, {3, 2, 2}};
+  const render::Sheet near = render::sheet_layout(in);
+  for (sim::VesicleState& v : in.states.back().vesicles) v.position.values.row(0) += sim::Vec3(900, 0, 40).transpose();
+  const render::Sheet far = render::sheet_layout(in);
+  for (const render::Sheet* sheet : {&near, &far})
+    for (const render::SheetPanel& p : sheet->panels) {
+      CHECK(p.target.norm() < 1e-12);
+      CHECK(p.half_height > 2);
+      CHECK(p.half_height < 3);
+      CHECK(p.width == near.panels.front().width);
+      CHECK(p.width > 6 * near.scale);
+    }
+  in.box.reset();
+  CHECK(render::sheet_layout(in).panels.back().target.norm() > 100);
+}
+
 TEST_CASE("every figure of the catalogue is written as PNG, SVG, PDF and CSV, twice with the same bytes") {
   const support::TemporaryFolder folder;
   for (const render::FigureRow& row : render::figures()) {

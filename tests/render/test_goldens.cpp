@@ -110,6 +110,19 @@ TEST_CASE("the pair in the cutaway style looks as it did") {
   check_golden("pair_cutaway", surfaces::painted(surfaces::frame_of(pair(), view), pair()));
 }
 
+TEST_CASE("vesicles cut at the faces of a cell look as they did") {
+  render::ViewParameters view = small_view();
+  view.camera = "three-quarter";
+  const sim::State state =
+      surfaces::state_of({surfaces::disc(turn(-35, {0, 1, 0}) * turn(50, {1, 0, 0}), {-1.0, -0.9, 0.6}),
+                          surfaces::ellipsoid({0.82, 0.82, 1.5}, turn(66, {0, 1, 0}), {0.9, -0.2, -0.5}),
+                          surfaces::ellipsoid({0.6, 0.6, 0.9}, turn(-40, {0, 1, 0}), {1.1, -1.0, 1.1}),
+                          surfaces::sphere({-1, 1, -1}, 0.7)});
+  render::Frame frame = surfaces::frame_of(state, view);
+  frame.faces = render::FaceBox{{-1.5, -1.3, -1.4}, {1.5, 1.3, 1.4}};
+  check_golden("cell_faces", frame);
+}
+
 TEST_CASE("the pair in the outline style on white looks as it did") {
   render::ViewParameters view = small_view();
   view.style = "outline";
