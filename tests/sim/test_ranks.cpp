@@ -182,7 +182,7 @@ TEST_CASE("ranks that divide the mesh of a fast sum get the bits of one that has
   };
   for (int b = 0; b < bodies_count; ++b) {
     bodies.push_back({Points(3 * numbers(3)), {}, 0});
-    groups.push_back({bodies.back().coarse, b, true, 0});
+    groups.push_back({bodies.back().coarse, b});
     strengths.push_back({numbers(3), numbers(6)});
   }
   const std::vector<FastStrengths> none(bodies_count);
@@ -204,7 +204,6 @@ TEST_CASE("ranks that divide the mesh of a fast sum get the bits of one that has
         as_ranks(count, [&](const Ranks& ranks) {
           std::vector<FastGroup> mine = groups;
           for (int g = 0; g < bodies_count; ++g) {
-            mine[std::size_t(g)].owner = g % count;
             mine[std::size_t(g)].wanted = g % count == ranks.rank;
           }
           FastParts own;
