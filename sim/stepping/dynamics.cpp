@@ -1,5 +1,7 @@
 #include "sim/stepping/dynamics.h"
 
+#include "sim/core/divided.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,11 +16,15 @@ constexpr int most_upsampling =
     8;  // that a scene may ask for, and Algorithm 1 chooses: a forged record makes no vast grid
 constexpr double largest_number = 1e150;  // the square of every number is one, too
 
-/// One list of members for both directions.
+/// One list of members for both directions: of all but the vesicles.
 template <class Archive, class D>
-void transfer(Archive& ar, D& d) {
+void transfer_run(Archive& ar, D& d) {
   ar(d.step), ar(d.saves), ar(d.time), ar(d.dt_limit), ar(d.calm);
   ar(d.control.order), ar(d.control.at_order), ar(d.control.held), ar(d.control.resolution_due), ar(d.control.gap);
+}
+template <class Archive, class D>
+void transfer(Archive& ar, D& d) {
+  transfer_run(ar, d);
   ar.size(d.vesicles);
   for (auto& v : d.vesicles) visit(v, [&](Part, auto& member) { ar(member); });
 }
@@ -40,6 +46,23 @@ struct Writer {
     (*this)(m.rows()), (*this)(m.cols());
     numbers.insert(numbers.end(), m.data(), m.data() + m.size());
   }
+  void operator()(const Coefficients& c) { (*this)(c.order), (*this)(c.values); }
+  void operator()(const Frame& frame) { transfer_frame(*this, frame); }
+  void operator()(const History& history) {
+    (*this)(history.levels.size());
+    for (const PastLevel& level : history.levels)
+      visit_level(level, [this](const char*, const auto& part) { (*this)(part); });
+  }
+  void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
+};
+
+/// How many numbers a Writer would write.
+struct Counter {
+  std::size_t numbers = 0;
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void operator()(const T&) { ++numbers; }
+  void operator()(const Matrix& m) { numbers += 2 + std::size_t(m.size()); }
   void operator()(const Coefficients& c) { (*this)(c.order), (*this)(c.values); }
   void operator()(const Frame& frame) { transfer_frame(*this, frame); }
   void operator()(const History& history) {
@@ -181,24 +204,28 @@ TrajectoryLayout layout_of(const Dynamics& d) {
 }
 
 void from_first(const Ranks& ranks, Dynamics& d) {
-  std::vector<double> numbers;
-  TrajectoryLayout layout;
-  if (ranks.first()) {
-    numbers = serialised(d);
-    layout = layout_of(d);
-  }
-  from_first(ranks, numbers, [&](Parcel& parcel, std::vector<double>& all) {
-    parcel(layout.vesicles), parcel(layout.order), parcel(layout.label_order), parcel(layout.tracers), parcel(all);
+  if (ranks.count == 1) return;
+  std::size_t count = d.vesicles.size();
+  from_first(ranks, d, [&](Parcel& parcel, Dynamics& all) {
+    transfer_run(parcel, all);
+    parcel(count);
   });
-  if (!ranks.first()) d = deserialised(numbers, layout);
+  d.vesicles.resize(count);
+  const Division of_first{&ranks, std::vector<int>(count, 0)};
+  divided_for(
+      of_first, int(count), [](int) {}, [&](Parcel& parcel, int k) { transfer(parcel, d.vesicles[std::size_t(k)]); });
 }
 
 std::size_t resume_numbers(const Dynamics& d, int past_levels) {
-  Dynamics full = d;
-  for (VesicleDynamics& v : full.vesicles)
-    while (static_cast<int>(v.history.levels.size()) < past_levels)
-      v.history.levels.push_back({v.position, v.motion, v.sliding, 1});
-  return serialised(full).size();
+  Counter counter;
+  counter(resume_version);
+  transfer(counter, d);
+  for (const VesicleDynamics& v : d.vesicles) {
+    const PastLevel level{v.position, v.motion, v.sliding, 1};
+    for (int missing = past_levels - static_cast<int>(v.history.levels.size()); missing > 0; --missing)
+      visit_level(level, [&](const char*, const auto& part) { counter(part); });
+  }
+  return counter.numbers;
 }
 
 Dynamics deserialised(std::span<const double> numbers, const TrajectoryLayout& layout) {
