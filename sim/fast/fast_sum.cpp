@@ -128,17 +128,14 @@ FastNeeds needs_of(const FastSetting& setting, const FastOutlines& outlines, std
   return needs;
 }
 
-FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& bodies,
-                      const std::vector<FastGroup>& groups, const std::vector<Exclusion>& exclusions, bool dual,
-                      FastParts& parts, const Ranks& ranks) {
-  std::vector<FastBody> scaled_bodies = bodies;
-  std::vector<FastGroup> scaled_groups = groups;
+FastSum plan_fast_sum(const FastSetting& setting, std::vector<FastBody> bodies, std::vector<FastGroup> groups,
+                      const std::vector<Exclusion>& exclusions, bool dual, FastParts& parts, const Ranks& ranks) {
   std::vector<const Points*> sources, targets;
   const Points nothing(3, 0);
   FastSum sum;
   sum.arms.resize(bodies.size());
   for (std::size_t j = 0; j < bodies.size(); ++j) {
-    FastBody& body = scaled_bodies[j];
+    FastBody& body = bodies[j];
     body.coarse /= setting.cutoff;
     body.fine /= setting.cutoff;
     body.fine_within /= setting.cutoff;
@@ -147,7 +144,7 @@ FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& b
     if (dual && setting.cell && body.owner == ranks.rank && body.coarse.cols() > 0)
       sum.arms[j] = body.coarse.colwise() - middle_of(box_of(body.coarse));
   }
-  for (FastGroup& group : scaled_groups) {
+  for (FastGroup& group : groups) {
     group.points /= setting.cutoff;
     targets.push_back(group.wanted ? &group.points : &nothing);
     sum.wanted.push_back(group.wanted);
@@ -168,7 +165,7 @@ FastSum plan_fast_sum(const FastSetting& setting, const std::vector<FastBody>& b
     sum.home = parts.mesh->homes(x, middle, ranks);
     sum.targets = parts.mesh->place_targets(sent_home(x, sum.home, ranks, sum.read_for), middle);
   }
-  sum.pairs = plan_pairs(scaled_bodies, scaled_groups, exclusions, setting.single_precision, scaled_cell(setting));
+  sum.pairs = plan_pairs(bodies, groups, exclusions, setting.single_precision, scaled_cell(setting));
   sum.first_source = firsts(sources);
   sum.first_target = firsts(targets);
   return sum;

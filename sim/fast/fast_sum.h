@@ -72,8 +72,8 @@ FastNeeds needs_of(const FastSetting&, const FastOutlines&, std::span<const char
 /// `dual`: some strengths have double layers. `parts`: of an earlier sum; renewed where they do not fit. Ranks, which
 /// live longer than the sum, have the same bodies and groups, with the points that they need; each group is wanted by
 /// one.
-FastSum plan_fast_sum(const FastSetting&, const std::vector<FastBody>&, const std::vector<FastGroup>&,
-                      const std::vector<Exclusion>&, bool dual, FastParts& parts, const Ranks& = alone);
+FastSum plan_fast_sum(const FastSetting&, std::vector<FastBody>, std::vector<FastGroup>, const std::vector<Exclusion>&,
+                      bool dual, FastParts& parts, const Ranks& = alone);
 
 /// Velocity at the targets of each group that is wanted; ranks call it together, with the strengths of the points that
 /// they have. Does not depend on the number of threads and ranks. Throws std::invalid_argument when there are double

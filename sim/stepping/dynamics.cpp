@@ -171,6 +171,7 @@ void carry(Plans& plans, const Relabelling& r, VesicleDynamics& v) {
 
 std::vector<double> serialised(const Dynamics& d) {
   Writer writer;
+  writer.numbers.reserve(resume_numbers(d, 0));
   writer(resume_version);
   transfer(writer, d);
   return std::move(writer.numbers);

@@ -112,13 +112,21 @@ FastStrengths strengths_of(const Sources& s, const SourceDensities& density) {
   FastStrengths strengths;
   strengths.force = stokeslet_factor * (density.force.array().colwise() * s.area.array()).matrix().transpose();
   if (density.dual.size() == 0) return strengths;
-  strengths.dual.resize(6, s.points.rows());
+  strengths.dual.resize(6, s.area.size());
   const Points n = stresslet_factor * s.normals.transpose(), u = density.dual.transpose();
   int c = 0;
   for (int a = 0; a < 3; ++a)
     for (int b = a; b < 3; ++b, ++c)
       strengths.dual.row(c) = 0.5 * (n.row(a).cwiseProduct(u.row(b)) + n.row(b).cwiseProduct(u.row(a)));
   return strengths;
+}
+
+/// Of sources whose points the fast sum has, what makes strengths of densities, if there are any.
+void keep_weights(Sources& s, bool strengths, bool dual) {
+  s.points.resize(0, 3);
+  s.spacing.resize(0);
+  if (!strengths) s.area.resize(0);
+  if (!strengths || !dual) s.normals.resize(0, 3);
 }
 
 FastInteraction plan_fast(Plans& plans, Interaction& w, std::span<const Coefficients> positions,
@@ -165,12 +173,17 @@ FastInteraction plan_fast(Plans& plans, Interaction& w, std::span<const Coeffici
       bodies[k].fine = w.sources[k].points.transpose();
       bodies[k].fine_within = coarse_limit(tolerance) * fast.spread[k].spacing.maxCoeff();
     });
-    return plan_fast_sum(choice.setting, bodies, groups, excluded, dual, parts, ranks);
+    return plan_fast_sum(choice.setting, std::move(bodies), std::move(groups), excluded, dual, parts, ranks);
   });
   fast.finely.resize(std::size_t(n));
   for (const PairLists::Group& group : fast.sum.pairs.groups)
     for (const PairLists::Segment& segment : group.segments)
       if (segment.level == 1) fast.finely[std::size_t(segment.body)] = 1;
+  parallel_for(n, [&](int i) {
+    const auto k = std::size_t(i);
+    keep_weights(fast.spread[k], true, w.dual[k]);
+    keep_weights(w.sources[k], fast.finely[k], w.dual[k]);
+  });
   return fast;
 }
 
@@ -256,7 +269,7 @@ Interaction plan_interaction(Plans& plans, std::span<const Coefficients> positio
   if (fast) {
     w.fast = std::make_shared<const FastInteraction>(
         plan_fast(plans, w, positions, *fast, excluded, outlines, options.far.tolerance));
-    for (const Sources& s : w.fast->spread) w.felt.push_back(s.points.rows() > 0);
+    for (const Sources& s : w.fast->spread) w.felt.push_back(s.area.size() > 0);
   } else {
     exclude(w.far, excluded);
     w.felt.assign(std::size_t(n), 1);

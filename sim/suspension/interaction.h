@@ -39,7 +39,7 @@ struct PairPlan {
 struct FastInteraction {
   FastSum sum;
   std::vector<const Basis*> spread_basis;
-  std::vector<Sources> spread;  ///< of those that this rank needs
+  std::vector<Sources> spread;  ///< of those that this rank needs; their weights
   std::vector<char> finely;     ///< whose fine grid is seen
 };
 
@@ -48,7 +48,8 @@ struct Interaction {
       target_basis;                             ///< fine source grids; target grids, which are the coarse source grids
   FarField far;                                 ///< on the coarse grids, which a fast sum does without
   std::shared_ptr<const FastInteraction> fast;  ///< in place of `far`, where it is cheaper
-  std::vector<Sources> sources;                 ///< on the fine grids, of those that this rank's vesicles see so
+  std::vector<Sources> sources;                 ///< on the fine grids, of those that this rank's vesicles see so; of a
+                                                ///< fast sum their weights
   std::vector<PairPlan> pairs;                  ///< of this rank's targets; by target, then source
   std::vector<char> dual;                       ///< per source vesicle: its viscosity contrast differs from 1
   Division division;                            ///< as the options have it
