@@ -153,6 +153,9 @@ FastSum plan_fast_sum(const FastSetting& setting, std::vector<FastBody> bodies, 
   const Box all = united_of_ranks(united(box_of(y), box_of(x)), ranks);
   const Vec3 middle = middle_of(all);
   renew(parts, setting, all.high - all.low);
+  Points corners(3, 2);
+  corners << all.low, all.high;
+  parts.mesh->homes(corners, middle, ranks);  // points that find no place on the mesh are refused by all ranks, or none
   sum.setting = setting;
   sum.dual = dual;
   sum.split = parts.split;

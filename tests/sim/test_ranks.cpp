@@ -261,7 +261,7 @@ TEST_CASE("ranks that have only the sources they need get the bits of one that h
   // Small bodies in a long row: whose targets are at one end needs nothing of the other.
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  constexpr int bodies_count = 24, points = 20, count = 4;
+  constexpr int bodies_count = 40, points = 20, count = 5;
   const auto numbers = [&](Eigen::Index rows) {
     return Matrix(Matrix::NullaryExpr(rows, points, [&] { return uniform(random); }));
   };
@@ -287,7 +287,8 @@ TEST_CASE("ranks that have only the sources they need get the bits of one that h
     std::vector<Points> found(bodies_count);
     std::vector<int> needed(count);
     as_ranks(count, [&](const Ranks& ranks) {
-      const Division division = divided(ranks, places, std::vector<double>(bodies_count, 1.0));
+      Division division = divided(ranks, places, std::vector<double>(bodies_count, 1.0));
+      for (int& owner : division.owner) owner = (owner + 1) % count;  // so that nobody's targets lie in its slab
       FastOutlines outlines;
       std::vector<char> wanted;
       for (int b = 0; b < bodies_count; ++b) {
@@ -316,7 +317,7 @@ TEST_CASE("ranks that have only the sources they need get the bits of one that h
         if (wanted[b]) found[b] = velocity[b];
     });
     INFO((cell ? "a cell" : "free space"));
-    for (const int of_rank : needed) CHECK(of_rank <= bodies_count / 2);
+    for (const int of_rank : needed) CHECK(of_rank <= bodies_count * 5 / 8);  // two fifths, and a few beside them
     for (std::size_t b = 0; b < bodies_count; ++b) CHECK((found[b].array() == whole[b].array()).all());
   }
 }
