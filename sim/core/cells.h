@@ -4,6 +4,7 @@
 
 #include "sim/core/types.h"
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -23,6 +24,13 @@ inline double distance(const Box& a, const Box& b) {
 }
 
 inline Box united(const Box& a, const Box& b) { return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)}; }
+
+/// A box that holds nothing: united with another one it is that one.
+inline Box empty_box() {
+  constexpr double huge = std::numeric_limits<double>::max();
+  return {Vec3::Constant(huge), Vec3::Constant(-huge)};
+}
+inline bool is_empty(const Box& box) { return !(box.low.array() <= box.high.array()).all(); }
 
 /// The pairs i < j of boxes that are no farther apart than `reach`, in ascending order.
 std::vector<std::pair<int, int>> near_pairs(std::span<const Box>, double reach);

@@ -4,6 +4,8 @@
 #include "sim/core/parallel.h"
 #include "sim/core/ranks.h"
 
+#include <algorithm>
+
 namespace sim {
 
 /// body(k) for the items of this rank; then `transfer(parcel, k)` carries what has become of item k from its rank to
@@ -36,13 +38,25 @@ void divided_for(const Division& division, int n, Body&& body, Transfer&& transf
     if (!objection) objection.emplace();
     parcel(*objection);
   };
-  Parcel mine;
-  for (const int k : items) carry(mine, k);
-  const auto all = ranks.gathered(mine.numbers());
-  std::vector<Parcel> theirs;
-  for (const auto& one : all) theirs.emplace_back(one);
-  for (int k = 0; k < n; ++k)
-    if (!division.mine(k)) carry(theirs[std::size_t(division.owner[std::size_t(k)])], k);
+  // Some items at a time, so that nobody has the messages of all at once.
+  constexpr double numbers_at_once = 1 << 19;  // 4 MB
+  int at_once = 64;
+  for (int first = 0, end = 0; first < n; first = end) {
+    end = first + std::min(n - first, at_once);
+    Parcel mine;
+    for (int k = first; k < end; ++k)
+      if (division.mine(k)) carry(mine, k);
+    const auto all = ranks.gathered(mine.numbers());
+    std::vector<Parcel> theirs;
+    double numbers = 1;
+    for (const auto& one : all) {
+      theirs.emplace_back(one);
+      numbers += double(one.size());
+    }
+    for (int k = first; k < end; ++k)
+      if (!division.mine(k)) carry(theirs[std::size_t(division.owner[std::size_t(k)])], k);
+    at_once = int(std::clamp(numbers_at_once / numbers * (end - first), 1.0, double(n)));
+  }
   for (const auto& objection : objections)
     if (objection) throw std::domain_error(*objection);
 }

@@ -39,8 +39,11 @@ struct FastSum {
   PairLists pairs;
   std::vector<Eigen::Index> first_source, first_target;  ///< of bodies and of groups, and the ends
   std::vector<char> wanted;                              ///< by group
-  std::vector<int> owner;                                ///< likewise
+  std::vector<int> owner;                                ///< by body
+  std::vector<Points> arms;                              ///< of own bodies in a cell: coarse points from the middle
   const Ranks* ranks = &alone;                           ///< who divide the mesh
+  std::vector<int> home;                                 ///< by target, the rank that reads its velocity off the mesh
+  std::vector<Eigen::Index> read_for;                    ///< by rank, how many of its targets are read here
 };
 
 /// Split, window and mesh depend on few numbers: whoever makes many sums keeps them.
@@ -52,15 +55,29 @@ struct FastParts {
   std::array<int, 3> nodes{};  ///< in free space
 };
 
-/// `dual`: some strengths have double layers. `parts`: of an earlier sum; renewed where they do not fit. Ranks, which
-/// live longer than the sum, have the same bodies and groups; each wants those that it owns.
-FastSum plan_fast_sum(const FastSetting&, const std::vector<FastBody>&, const std::vector<FastGroup>&,
-                      const std::vector<Exclusion>&, bool dual, FastParts& parts, const Ranks& = alone);
+/// The boxes of all bodies' coarse points, of their coarse and fine points, and of the targets of groups: what ranks
+/// know of those that they may not need.
+struct FastOutlines {
+  std::vector<Box> coarse, both, groups;
+};
+/// By body, whether this rank needs its coarse points for its part of the mesh, and all its points for its groups.
+struct FastNeeds {
+  std::vector<char> mesh, pairs;
+};
+/// `wanted`: the groups of this rank. Beside what is told, a group needs all points of the bodies that are taken out of
+/// its velocities.
+FastNeeds needs_of(const FastSetting&, const FastOutlines&, std::span<const char> wanted, FastParts& parts,
+                   const Ranks&);
 
-/// Velocity at the targets of each group that is wanted; ranks call it together, with all strengths. Does not depend on
-/// the number of threads and ranks. Throws std::invalid_argument when
-/// there are double layers that were not planned.
-std::vector<Points> fast_velocity(const FastSum&, std::span<const FastStrengths> coarse,
-                                  std::span<const FastStrengths> fine);
+/// `dual`: some strengths have double layers. `parts`: of an earlier sum; renewed where they do not fit. Ranks, which
+/// live longer than the sum, have the same bodies and groups, with the points that they need; each group is wanted by
+/// one.
+FastSum plan_fast_sum(const FastSetting&, std::vector<FastBody>, std::vector<FastGroup>, const std::vector<Exclusion>&,
+                      bool dual, FastParts& parts, const Ranks& = alone);
+
+/// Velocity at the targets of each group that is wanted; ranks call it together, with the strengths of the points that
+/// they have. Does not depend on the number of threads and ranks. Throws std::invalid_argument when there are double
+/// layers that were not planned.
+std::vector<Points> fast_velocity(const FastSum&, std::vector<FastStrengths> coarse, std::vector<FastStrengths> fine);
 
 }  // namespace sim

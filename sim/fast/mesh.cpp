@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <tuple>
 
@@ -270,27 +271,43 @@ MeshPoints Mesh::place_sources(const Points& points, const Eigen::Vector3d& midd
   return placed;
 }
 
-MeshPoints Mesh::place_targets(const Points& points, const Eigen::Vector3d& middle, const Ranks& ranks) const {
-  const Plan& m = *plan_;
-  const std::vector<int> starts = m.starts(points, middle);
-  std::vector<int> wanted, home;
-  for (int k = 0; k < static_cast<int>(points.cols()); ++k) {
-    home.push_back(m.home(starts[3 * std::size_t(k) + 2], ranks.count));
-    if (home.back() == ranks.rank) wanted.push_back(k);
-  }
-  MeshPoints placed = m.placed(points, middle, starts, std::move(wanted), false);
-  placed.home = std::move(home);
-  return placed;
+MeshPoints Mesh::place_targets(const Points& points, const Eigen::Vector3d& middle) const {
+  std::vector<int> all(static_cast<std::size_t>(points.cols()));
+  std::iota(all.begin(), all.end(), 0);
+  return plan_->placed(points, middle, plan_->starts(points, middle), std::move(all), false);
 }
 
-MeshVelocity Mesh::velocity_of(const MeshPoints& sources, const Points& force, const Tensors& dual,
-                               const Ranks& ranks) const {
+std::vector<int> Mesh::homes(const Points& points, const Eigen::Vector3d& middle, const Ranks& ranks) const {
+  const std::vector<int> starts = plan_->starts(points, middle);
+  std::vector<int> home;
+  for (std::size_t k = 2; k < starts.size(); k += 3) home.push_back(plan_->home(starts[k], ranks.count));
+  return home;
+}
+
+bool Mesh::reaches_slab(const Box& box, const Eigen::Vector3d& middle, const Ranks& ranks) const {
+  const Plan& m = *plan_;
+  if (ranks.count == 1) return true;
+  const MeshSlab slab = m.slab(ranks.rank, ranks.count);
+  if (slab.planes == 0) return false;
+  const int width = m.window.width(), nodes = m.nodes[2];
+  const Eigen::RowVector3d along = m.per_node.row(2);
+  const double at = along.dot(0.5 * (box.low + box.high) - middle) + (nodes - 1) / 2.0 - width / 2.0,
+               half = along.cwiseAbs().dot(0.5 * (box.high - box.low));
+  // Windows begin between these planes; one more takes up rounding.
+  const double low = std::floor(at - half), high = std::ceil(at + half) + 1, reach = high - low + width;
+  if (!m.periodic) return low < slab.first_plane + slab.planes && high + width > slab.first_plane;
+  double from = slab.first_plane - low;  // to the slab, around the end
+  from -= nodes * std::floor(from / nodes);
+  return from < reach || from + slab.planes > nodes;
+}
+
+MeshVelocity Mesh::velocity_of(const MeshPoints& sources, const MeshStrengths& strengths, const Ranks& ranks) const {
   const Plan& m = *plan_;
   const MeshSlab slab = m.slab(ranks.rank, ranks.count);
   const bool divided = ranks.count > 1;
-  std::vector<Plan::Field> fields(dual.cols() > 0 ? 4 : 3);
+  std::vector<Plan::Field> fields(strengths.double_layers ? 4 : 3);
   for (Plan::Field& field : fields) field.resize(m.plane * std::size_t(slab.planes + m.halo(ranks.count)));
-  m.spread(sources, force, dual, slab, fields);
+  m.spread(sources, strengths.force, strengths.dual, slab, fields);
   m.forward_planes(slab, fields);
   if (divided)
     m.multiply_columns(slab, ranks, fields);
@@ -300,7 +317,7 @@ MeshVelocity Mesh::velocity_of(const MeshPoints& sources, const Points& force, c
   if (divided) m.fill_halo(slab, ranks, fields);
   MeshVelocity velocity;
   for (std::size_t c = 0; c < 3; ++c) velocity.nodes[c] = std::move(fields[c]);
-  if (!m.periodic) velocity.everywhere = 2 / m.cut * force.rowwise().sum();
+  if (!m.periodic) velocity.everywhere = 2 / m.cut * strengths.net_force;
   return velocity;
 }
 
@@ -310,9 +327,9 @@ void Mesh::add_velocity(const MeshVelocity& v, const MeshPoints& targets, Points
   for (const int k : targets.point) velocity.col(k) += v.everywhere;
 }
 
-void Mesh::add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
+void Mesh::add_velocity(const MeshPoints& sources, const MeshStrengths& strengths, const MeshPoints& targets,
                         Points& velocity, const Ranks& ranks) const {
-  add_velocity(velocity_of(sources, force, dual, ranks), targets, velocity, ranks);
+  add_velocity(velocity_of(sources, strengths, ranks), targets, velocity, ranks);
 }
 
 }  // namespace sim

@@ -16,6 +16,7 @@
 // same sums in the same order, whoever makes it.
 #pragma once
 
+#include "sim/core/cells.h"
 #include "sim/core/ranks.h"
 #include "sim/core/raw_memory.h"
 #include "sim/fast/window.h"
@@ -38,7 +39,14 @@ struct MeshPoints {
   RawVector<double> windows, slopes;  ///< 3 a point, padded to whole vectors; slopes empty unless asked for
   std::vector<int> order;             ///< neighbours together
   std::vector<int> touching, first;   ///< sources whose windows reach into block b: touching[first[b]] ...
-  std::vector<int> home;              ///< targets: by point given, the rank in whose slab its window begins
+};
+
+/// What sources bring to a mesh: S f + D Q without factors, a column a point that was placed.
+struct MeshStrengths {
+  Points force;
+  Tensors dual;                        ///< no columns without double layers
+  bool double_layers = false;          ///< of some source of some rank
+  Eigen::Vector3d net_force{0, 0, 0};  ///< of all sources of all ranks; wanted in free space
 };
 
 /// The smooth part of some sources at all nodes of a mesh, of several ranks at those of the slab and its halo, to be
@@ -66,16 +74,20 @@ class Mesh {
   static double padded_nodes(const std::array<int, 3>& nodes);
 
   /// Points in a box around the middle of the mesh, which is at `middle`; anywhere, in a periodic cell. Throws
-  /// std::domain_error when a window would leave the mesh. Ranks give the same points.
+  /// std::domain_error when a window would leave the mesh. Of several ranks each gives in ascending order all sources
+  /// whose windows reach into its slab, and perhaps others, and the targets whose home it is.
   MeshPoints place_sources(const Points&, const Eigen::Vector3d& middle, bool slopes, const Ranks& = alone) const;
-  MeshPoints place_targets(const Points&, const Eigen::Vector3d& middle, const Ranks& = alone) const;
-  /// Adds the smooth part of all sources at the targets placed here; without double layer `dual` has no columns. Does
-  /// not depend on the number of threads and ranks, which call it together.
-  void add_velocity(const MeshPoints& sources, const Points& force, const Tensors& dual, const MeshPoints& targets,
-                    Points& velocity, const Ranks& = alone) const;
+  MeshPoints place_targets(const Points&, const Eigen::Vector3d& middle) const;
+  /// By target, the rank in whose slab its window begins.
+  std::vector<int> homes(const Points&, const Eigen::Vector3d& middle, const Ranks&) const;
+  /// Whether the window of a point in the box may reach into the slab of this rank.
+  bool reaches_slab(const Box&, const Eigen::Vector3d& middle, const Ranks&) const;
+  /// Adds the smooth part of all sources at the targets placed here. Does not depend on the number of threads and
+  /// ranks, which call it together.
+  void add_velocity(const MeshPoints& sources, const MeshStrengths&, const MeshPoints& targets, Points& velocity,
+                    const Ranks& = alone) const;
   /// The same in two steps.
-  MeshVelocity velocity_of(const MeshPoints& sources, const Points& force, const Tensors& dual,
-                           const Ranks& = alone) const;
+  MeshVelocity velocity_of(const MeshPoints& sources, const MeshStrengths&, const Ranks& = alone) const;
   void add_velocity(const MeshVelocity&, const MeshPoints& targets, Points& velocity, const Ranks& = alone) const;
 
  private:

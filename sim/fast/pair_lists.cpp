@@ -17,8 +17,7 @@ namespace {
 constexpr int source_patch = 8;
 
 Box box_of(const Points& points) {
-  constexpr double huge = std::numeric_limits<double>::max();
-  if (points.cols() == 0) return {Vec3::Constant(huge), Vec3::Constant(-huge)};
+  if (points.cols() == 0) return empty_box();
   return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
 }
 
@@ -93,19 +92,27 @@ std::vector<std::vector<Image>> seen_images(std::span<const Box> bodies, std::sp
   const auto home = [&](const Box& box) {  // number of the cell that holds its centre
     return Eigen::Vector3i((inverse * (0.5 * (box.low + box.high))).array().floor().matrix().cast<int>());
   };
+  std::vector<std::vector<Image>> seen(groups.size());
   double widest = 0;
-  for (const Box& box : bodies) widest = std::max(widest, (box.high - box.low).norm());
-  for (const Box& box : groups) widest = std::max(widest, (box.high - box.low).norm());
+  for (const Box& box : bodies)
+    if (!is_empty(box)) widest = std::max(widest, (box.high - box.low).norm());
+  std::vector<int> here;  // groups that have points
   std::vector<Box> boxes;
-  Box all{};
-  for (const Box& box : groups) {
+  Box all = empty_box();
+  for (int g = 0; g < std::ssize(groups); ++g) {
+    const Box& box = groups[std::size_t(g)];
+    if (is_empty(box)) continue;
+    here.push_back(g);
+    widest = std::max(widest, (box.high - box.low).norm());
     boxes.push_back(moved(box, -(sides * home(box).cast<double>())));
-    all = boxes.size() == 1 ? boxes[0] : united(all, boxes.back());
+    all = united(all, boxes.back());
   }
+  if (here.empty()) return seen;
   Eigen::Vector3i most = Eigen::Vector3i::Zero();
   for (int d = 0; cell && d < 3; ++d) most[d] = static_cast<int>(std::ceil((1 + widest) * inverse.row(d).norm())) + 1;
   std::vector<Image> images;
   for (int j = 0; j < std::ssize(bodies); ++j) {
+    if (is_empty(bodies[std::size_t(j)])) continue;
     const Eigen::Vector3i from = home(bodies[std::size_t(j)]);
     for (int x = -most[0]; x <= most[0]; ++x)
       for (int y = -most[1]; y <= most[1]; ++y)
@@ -117,12 +124,12 @@ std::vector<std::vector<Image>> seen_images(std::span<const Box> bodies, std::sp
           boxes.push_back(box);
         }
   }
-  std::vector<std::vector<Image>> seen(groups.size());
-  const auto first = static_cast<int>(groups.size());
-  for (const auto& [g, i] : near_pairs(boxes, 1))
-    if (g < first && i >= first) {
-      const Image& image = images[std::size_t(i - first)];
-      seen[std::size_t(g)].push_back({image.body, image.lattice + home(groups[std::size_t(g)])});
+  const auto first = static_cast<int>(here.size());
+  for (const auto& [i, k] : near_pairs(boxes, 1))
+    if (i < first && k >= first) {
+      const Image& image = images[std::size_t(k - first)];
+      const auto g = std::size_t(here[std::size_t(i)]);
+      seen[g].push_back({image.body, image.lattice + home(groups[g])});
     }
   return seen;
 }
@@ -136,6 +143,14 @@ double PairLists::pairs() const {
   return sum;
 }
 
+std::vector<char> near_bodies(std::span<const Box> bodies, std::span<const Box> groups,
+                              const std::optional<Eigen::Matrix3d>& cell) {
+  std::vector<char> near(bodies.size());
+  for (const auto& images : seen_images(bodies, groups, cell))
+    for (const Image& image : images) near[std::size_t(image.body)] = 1;
+  return near;
+}
+
 PairLists plan_pairs(const std::vector<FastBody>& bodies, const std::vector<FastGroup>& groups,
                      const std::vector<Exclusion>& exclusions, bool single_precision,
                      const std::optional<Eigen::Matrix3d>& cell) {
@@ -145,13 +160,21 @@ PairLists plan_pairs(const std::vector<FastBody>& bodies, const std::vector<Fast
   lists.groups.resize(groups.size());
   std::vector<Box> boxes, group_boxes;
   for (const FastBody& body : bodies) boxes.push_back(united(box_of(body.coarse), box_of(body.fine)));
-  for (const FastGroup& group : groups) group_boxes.push_back(box_of(group.points));
+  for (const FastGroup& group : groups) group_boxes.push_back(group.wanted ? box_of(group.points) : empty_box());
+  const std::vector<std::vector<Image>> seen = seen_images(boxes, group_boxes, cell);
+  std::vector<char> needed(bodies.size());
+  for (const auto& images : seen)
+    for (const Image& image : images) needed[std::size_t(image.body)] = 1;
+  for (const FastGroup& group : groups)
+    if (group.wanted && group.body >= 0) needed[std::size_t(group.body)] = 1;
+  for (const Exclusion& e : exclusions)
+    if (groups[std::size_t(e.group)].wanted) needed[std::size_t(e.surface)] = 1;
   parallel_for(static_cast<int>(bodies.size()), [&](int i) {
     const auto j = std::size_t(i);
+    if (!needed[j]) return;
     const Vec3 centre = 0.5 * (boxes[j].low + boxes[j].high);
     lists.bodies[j] = {centre, {level_of(bodies[j].coarse, centre), level_of(bodies[j].fine, centre)}};
   });
-  const std::vector<std::vector<Image>> seen = seen_images(boxes, group_boxes, cell);
   const auto shift_of = [&](const Eigen::Vector3i& image) {
     return cell ? Vec3(*cell * image.cast<double>()) : Vec3(Vec3::Zero());
   };

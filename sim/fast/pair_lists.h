@@ -2,6 +2,7 @@
 // near whom.
 #pragma once
 
+#include "sim/core/cells.h"
 #include "sim/core/types.h"
 #include "sim/fast/patches.h"
 
@@ -10,10 +11,12 @@
 
 namespace sim {
 
-/// Sources of one body. The fine ones, if any, serve patches of targets that are nearer than `fine_within`.
+/// Sources of one body. The fine ones, if any, serve patches of targets that are nearer than `fine_within`. Where
+/// several ranks make a sum, each has the points of those bodies that it needs (needs_of() in fast_sum.h).
 struct FastBody {
   Points coarse, fine;
   double fine_within = 0;
+  int owner = 0;  ///< a rank that has its strengths
 };
 
 /// Strengths of one body at its points: S f + D Q without factors; `dual` may be empty.
@@ -25,8 +28,7 @@ struct FastStrengths {
 struct FastGroup {
   Points points;
   int body = -1;       ///< whose points they are, which they do not see; -1: of none
-  bool wanted = true;  ///< else no velocities are, and the points only tell how far the targets of all reach
-  int owner = 0;       ///< of several ranks, the one that wants them
+  bool wanted = true;  ///< else no velocities are, and no points are needed: another rank has them
 };
 
 /// Of one geometry.
@@ -38,7 +40,7 @@ struct PairLists {
   };
   struct Body {
     Eigen::Vector3d centre;
-    std::array<Level, 2> levels;  ///< coarse, fine
+    std::array<Level, 2> levels;  ///< coarse, fine; empty where no group sees them
   };
   /// Sources of a body that a patch of targets sees within the cut-off.
   struct Segment {
@@ -66,6 +68,10 @@ struct PairLists {
   std::vector<Group> groups;
   double pairs() const;  ///< evaluated in the residual part
 };
+
+/// Which bodies have images that are no farther than the cut-off, the unit of length, from some group.
+std::vector<char> near_bodies(std::span<const Box> bodies, std::span<const Box> groups,
+                              const std::optional<Eigen::Matrix3d>& cell);
 
 /// Lengths in units of the cut-off; the columns of `cell` are the sides of a periodic cell, if there is one. Bodies
 /// have at most 65535 points.

@@ -180,9 +180,8 @@ void add_all(const PairLists& lists, const KernelSplit& split, std::span<const F
 
 }  // namespace
 
-void add_pairs(const PairLists& lists, const KernelSplit& split, std::span<const FastStrengths> coarse,
+void add_pairs(const PairLists& lists, const KernelSplit& split, bool dual, std::span<const FastStrengths> coarse,
                std::span<const FastStrengths> fine, std::vector<Points>& velocity) {
-  const bool dual = std::any_of(coarse.begin(), coarse.end(), [](const auto& s) { return s.dual.cols() > 0; });
   if (lists.single_precision)
     (dual ? add_all<float, true> : add_all<float, false>)(lists, split, coarse, fine, velocity);
   else

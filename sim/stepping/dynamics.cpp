@@ -1,5 +1,7 @@
 #include "sim/stepping/dynamics.h"
 
+#include "sim/core/divided.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -16,11 +18,15 @@ constexpr int most_upsampling =
     8;  // that a scene may ask for, and Algorithm 1 chooses: a forged record makes no vast grid
 constexpr double largest_number = 1e150;  // the square of every number is one, too
 
-/// One list of members for both directions.
+/// One list of members for both directions: of all but the vesicles.
 template <class Archive, class D>
-void transfer(Archive& ar, D& d) {
+void transfer_run(Archive& ar, D& d) {
   ar(d.step), ar(d.saves), ar(d.time), ar(d.dt_limit), ar(d.calm);
   ar(d.control.order), ar(d.control.at_order), ar(d.control.held), ar(d.control.resolution_due), ar(d.control.gap);
+}
+template <class Archive, class D>
+void transfer(Archive& ar, D& d) {
+  transfer_run(ar, d);
   ar.size(d.vesicles);
   for (auto& v : d.vesicles) visit(v, [&](Part, auto& member) { ar(member); });
   ar(d.learned);
@@ -65,6 +71,29 @@ struct Writer {
   }
   void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
 };
+
+/// How many numbers a Writer would write.
+struct Counter {
+  std::size_t numbers = 0;
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void operator()(const T&) { ++numbers; }
+  void operator()(const Matrix& m) { numbers += 2 + std::size_t(m.size()); }
+  void operator()(const Coefficients& c) { (*this)(c.order), (*this)(c.values); }
+  void operator()(const Frame& frame) { transfer_frame(*this, frame); }
+  void operator()(const History& history) {
+    (*this)(history.levels.size());
+    for (const PastLevel& level : history.levels)
+      visit_level(level, [this](const char*, const auto& part) { (*this)(part); });
+  }
+  void operator()(const Lessons&) { ++numbers; }  // by numbers_learned(), each
+  void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
+};
+/// Whether something was learned; then two sizes each of directions and images, and their numbers, two in the place of
+/// one.
+std::size_t numbers_learned(std::size_t size, std::size_t directions) {
+  return 1 + 2 * (2 + (size * directions + 1) / 2);
+}
 
 [[noreturn]] void refuse(const char* why) { throw std::runtime_error(why); }
 
@@ -239,6 +268,7 @@ Lessons delivered(const Lessons& learned, std::span<const int> keepers, const Di
 
 std::vector<double> serialised(const Dynamics& d) {
   Writer writer;
+  writer.numbers.reserve(resume_numbers(d, 0));
   writer(resume_version);
   transfer(writer, d);
   return std::move(writer.numbers);
@@ -272,30 +302,33 @@ TrajectoryLayout layout_of(const Dynamics& d) {
 }
 
 void from_first(const Ranks& ranks, Dynamics& d) {
-  std::vector<double> numbers;
-  TrajectoryLayout layout;
-  if (ranks.first()) {
-    numbers = serialised(d);
-    layout = layout_of(d);
-  }
-  from_first(ranks, numbers, [&](Parcel& parcel, std::vector<double>& all) {
-    parcel(layout.vesicles), parcel(layout.order), parcel(layout.label_order), parcel(layout.tracers), parcel(all);
+  if (ranks.count == 1) return;
+  std::size_t count = d.vesicles.size(), lessons = d.learned.size();
+  from_first(ranks, d, [&](Parcel& parcel, Dynamics& all) {
+    transfer_run(parcel, all);
+    parcel(count), parcel(lessons);
   });
-  if (!ranks.first()) d = deserialised(numbers, layout);
+  d.vesicles.resize(count);
+  d.learned.resize(lessons);  // they stay with the first rank until a solve asks for them
+  const Division of_first{&ranks, std::vector<int>(count, 0)};
+  d.keepers = of_first.owner;
+  divided_for(
+      of_first, int(count), [](int) {}, [&](Parcel& parcel, int k) { transfer(parcel, d.vesicles[std::size_t(k)]); });
 }
 
 std::size_t resume_numbers(const Dynamics& d, int past_levels) {
-  Dynamics full = d;
-  for (VesicleDynamics& v : full.vesicles)
-    while (static_cast<int>(v.history.levels.size()) < past_levels)
-      v.history.levels.push_back({v.position, v.motion, v.sliding, 1});
-  full.learned.clear();
-  for (const VesicleDynamics& v : full.vesicles) {
-    const Eigen::MatrixXf most =
-        Eigen::MatrixXf::Zero(unknowns(v.position.order), directions_kept(full.vesicles.size()));
-    full.learned.push_back(std::make_shared<const Learned>(Learned{most, most}));
+  Counter counter;
+  counter(resume_version);
+  transfer(counter, d);
+  for (const VesicleDynamics& v : d.vesicles) {
+    const PastLevel level{v.position, v.motion, v.sliding, 1};
+    for (int missing = past_levels - static_cast<int>(v.history.levels.size()); missing > 0; --missing)
+      visit_level(level, [&](const char*, const auto& part) { counter(part); });
   }
-  return serialised(full).size();
+  for (std::size_t k = 0; k < d.vesicles.size(); ++k)  // two to a number, of directions and images
+    counter.numbers += numbers_learned(std::size_t(unknowns(d.vesicles[k].position.order)),
+                                       std::size_t(directions_kept(d.vesicles.size())));
+  return counter.numbers;
 }
 
 Dynamics deserialised(std::span<const double> numbers, const TrajectoryLayout& layout) {

@@ -23,12 +23,16 @@ namespace {
 /// Velocity of the points of the grid.
 Coefficients rate_of_points(const VesicleState& v) { return {v.velocity.order, v.velocity.values + v.sliding.values}; }
 
+/// A motion as it is saved: of a sphere only tensions of zero mean are determined.
+Motion determined(const VesicleDynamics& v, const Basis& basis, const Geometry& g, Motion motion) {
+  if (!is_sphere({v.area, v.volume})) return motion;
+  const Matrix sigma = basis.synthesize(motion.tension).values;
+  motion.tension.values(0, 0) -= integrate(g, sigma.col(0)) / g.dA.sum() * std::sqrt(4 * std::numbers::pi);
+  return motion;
+}
+
 /// What is saved of a vesicle that moves so.
-VesicleState saved_vesicle(const VesicleDynamics& v, bool first, const Basis& basis, const Geometry& g, Motion motion) {
-  if (is_sphere({v.area, v.volume})) {  // only tensions of zero mean are determined
-    const Matrix sigma = basis.synthesize(motion.tension).values;
-    motion.tension.values(0, 0) -= integrate(g, sigma.col(0)) / g.dA.sum() * std::sqrt(4 * std::numbers::pi);
-  }
+VesicleState saved_vesicle(const VesicleDynamics& v, bool first, Motion motion) {
   VesicleState out;
   out.position = v.position;
   out.velocity = std::move(motion.velocity);
@@ -81,14 +85,16 @@ Attempt<State> evaluate(const Model& s, const Dynamics& d) {
     Attempt<SuspensionSolve> result = solve(s, suspension, 0, r, motions(d), frames(d), solve_tolerance(s.scene), d);
     if (!result) return result.rejection();
     State state{d.step, d.time, std::vector<VesicleState>(d.vesicles.size())};
+    std::vector<Motion>& motion = result->motions;
     divided_for(
         suspension.division, int(d.vesicles.size()),
         [&](int k) {
           const Membrane& m = *suspension.membranes[k];
-          state.vesicles[k] =
-              saved_vesicle(d.vesicles[k], d.saves == 0, m.bases.field, m.geometry, std::move(result->motions[k]));
+          motion[k] = determined(d.vesicles[k], m.bases.field, m.geometry, std::move(motion[k]));
         },
-        [&](Parcel& parcel, int k) { transfer(parcel, state.vesicles[k]); });
+        [&](Parcel& parcel, int k) { parcel(motion[k].velocity), parcel(motion[k].tension); });
+    for (std::size_t k = 0; k < motion.size(); ++k)
+      state.vesicles[k] = saved_vesicle(d.vesicles[k], d.saves == 0, std::move(motion[k]));
     return state;
   });
 }
@@ -125,8 +131,9 @@ struct Passage {
     }
     Motion motion{combined(levels, weights, &Level::velocity), combined(levels, weights, &Level::tension)};
     motion.velocity.values += frame_velocity(rigid_body(x), before.frame.from(dt - earlier)).values;
-    VesicleState out = saved_vesicle(after, false, s.plans.basis(x.order, measure_order(x.order)),
-                                     measured_geometry(s.plans, x), std::move(motion));
+    VesicleState out = saved_vesicle(after, false,
+                                     determined(after, s.plans.basis(x.order, measure_order(x.order)),
+                                                measured_geometry(s.plans, x), std::move(motion)));
     out.position = std::move(x);
     out.sliding = combined(levels, weights, &Level::sliding);
     if (path && earlier > 0) {

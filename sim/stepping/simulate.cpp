@@ -1,5 +1,6 @@
 #include "sim/stepping/simulate.h"
 
+#include "sim/core/checksum.h"
 #include "sim/stepping/saved_start.h"
 
 #include <fmt/format.h>
@@ -371,8 +372,11 @@ class Run {
   /// What all ranks compute must be the same on all. Processors of different kinds may round differently.
   void compare_ranks() const {
     if (model_.ranks.count == 1) return;
+    Checksum places;
+    for (const VesicleDynamics& v : d_.vesicles)
+      places.add({reinterpret_cast<const char*>(v.position.values.data()), sizeof(double)});
     std::vector<double> mine{d_.time, d_.dt_limit, double(d_.control.order)};
-    for (const VesicleDynamics& v : d_.vesicles) mine.push_back(v.position.values(0, 0));
+    for (const char letter : places.text()) mine.push_back(letter);
     const auto all = model_.ranks.gathered(mine);
     for (const auto& theirs : all)
       if (theirs != all[0])

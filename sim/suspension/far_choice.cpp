@@ -113,9 +113,9 @@ Rates rates_of(const FastSetting& s, bool dual) {
 /// As Neighbourhood does, where surfaces fill a periodic cell evenly.
 class EvenNeighbourhood {
  public:
-  EvenNeighbourhood(std::span<const Sources> surfaces, const Eigen::Matrix3d& cell)
+  EvenNeighbourhood(std::span<const Outline> surfaces, const Eigen::Matrix3d& cell)
       : density_(double(surfaces.size()) / std::abs(cell.determinant())) {
-    for (const Sources& s : surfaces) reach_ = std::max(reach_, (s.box.high - s.box.low).norm() / 2);
+    for (const Outline& s : surfaces) reach_ = std::max(reach_, (s.box.high - s.box.low).norm() / 2);
   }
   double count(double r, double finely, double fine, double coarse) const {
     const double near = std::min(r, finely + reach_);
@@ -126,32 +126,36 @@ class EvenNeighbourhood {
   double density_, reach_ = 0;
 };
 
+/// Points of the grids of the targets.
+double targets_of(const SurfaceCrowd& crowd) {
+  double sum = 0;
+  for (const int p : crowd.orders) sum += grid_points(p + 1);
+  return sum;
+}
+
 /// The cheapest cut-off and grid. `nodes_of`: nodes of the transforms, by the cut-off; `octaves`: how far beyond
 /// the least cut-off to look.
 template <class Neighbours, class Nodes>
-FastChoice cheapest(std::span<const int> orders, std::span<const Sources> coarse, double fine_points, bool dual,
-                    const FarOptions& options, const FastSetting& setting, const Neighbours& near,
-                    const Nodes& nodes_of, double octaves) {
-  const auto n = coarse.size();
-  const Rates rates = rates_of(setting, dual);
-  double targets = 0;
-  for (const Sources& s : coarse) targets += double(s.area.size());
-  const double transforms = dual ? 7 : 6;
+FastChoice cheapest(const SurfaceCrowd& crowd, const FarOptions& options, const FastSetting& setting,
+                    const Neighbours& near, const Nodes& nodes_of, double octaves) {
+  const auto n = crowd.orders.size();
+  const Rates rates = rates_of(setting, crowd.dual);
+  const double targets = targets_of(crowd), transforms = crowd.dual ? 7 : 6;
   FastChoice best{setting, 0, std::numeric_limits<double>::infinity()};
   for (const int finer : {0, 1, 2}) {
-    const double kh = largest_kh(finer, options.tolerance, dual);
+    const double kh = largest_kh(finer, options.tolerance, crowd.dual);
     if (kh <= 0) continue;
     double spread = 0, spacing = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double s = spread_order(orders[i], finer);
+      const double s = spread_order(crowd.orders[i], finer);
       spread += 2 * (s + 1) * (s + 1);
-      spacing = std::max(spacing, coarse[i].spacing.maxCoeff() * (orders[i] + 2) / (s + 1));
+      spacing = std::max(spacing, crowd.coarse[i].spacing * (crowd.orders[i] + 2) / (s + 1));
     }
     const double least = setting.wave_number * spacing / (std::numbers::pi * kh);
     for (int step = 0; step < 8 * octaves; ++step) {
       const double cutoff = least * std::exp2(step / 8.0);
       const double pairs = targets * near.count(cutoff, coarse_limit(options.tolerance) * spacing,
-                                                fine_points / double(n), spread / double(n));
+                                                crowd.fine_points / double(n), spread / double(n));
       constexpr double lanes_within = 0.5;  // of those evaluated
       const double nodes = nodes_of(cutoff);
       const double seconds = (pairs / lanes_within + targets * spread / double(n)) * rates.pair +
@@ -167,51 +171,47 @@ FastChoice cheapest(std::span<const int> orders, std::span<const Sources> coarse
   return best;
 }
 
-FastChoice choose_periodic(std::span<const int> orders, std::span<const Sources> coarse, std::span<const Sources> fine,
-                           bool dual, const FarOptions& options) {
-  FastSetting setting = fast_setting(options.tolerance, dual);
+FastChoice choose_periodic(const SurfaceCrowd& crowd, const FarOptions& options) {
+  FastSetting setting = fast_setting(options.tolerance, crowd.dual);
   setting.cell = options.cell;
-  double fine_points = 0, largest = 0;
-  for (std::size_t i = 0; i < fine.size(); ++i) {
-    fine_points += double(fine[i].area.size());
-    largest = std::max(largest, coarse[i].spacing.maxCoeff());
-  }
+  double largest = 0;
+  for (const Outline& surface : crowd.coarse) largest = std::max(largest, surface.spacing);
   const double node = Mesh::spacing(setting.wave_number, setting.oversampling);
   const Vec3 sides = options.cell->colwise().norm().transpose();
   // A cut-off beyond the whole cell leaves a mesh of a few nodes.
   const double octaves = 4 + std::max(0.0, std::log2(sides.maxCoeff() / largest));
   return cheapest(
-      orders, coarse, fine_points, dual, options, setting, EvenNeighbourhood(coarse, *options.cell),
+      crowd, options, setting, EvenNeighbourhood(crowd.coarse, *options.cell),
       [&](double cutoff) { return (sides / cutoff / node).cwiseMax(setting.window + 1).prod(); }, octaves);
 }
 
 }  // namespace
 
-std::optional<FastChoice> choose_fast(std::span<const int> orders, std::span<const Sources> coarse,
-                                      std::span<const Sources> fine, bool dual, const FarOptions& options) {
-  if (options.cell) return choose_periodic(orders, coarse, fine, dual, options);
+Outline outline_of(const Sources& s) { return {s.box, s.spacing.maxCoeff()}; }
+
+std::optional<FastChoice> choose_fast(const SurfaceCrowd& crowd, const FarOptions& options) {
+  if (options.cell) return choose_periodic(crowd, options);
   if (options.method == "direct") return std::nullopt;
-  const auto n = coarse.size();
-  double targets = 0, fine_points = 0, largest = 0;
-  Box all = coarse[0].box;
-  for (std::size_t i = 0; i < n; ++i) {
-    targets += double(coarse[i].area.size());
-    fine_points += double(fine[i].area.size());
-    largest = std::max(largest, coarse[i].spacing.maxCoeff());
-    all = united(all, coarse[i].box);
+  const auto n = double(crowd.orders.size());
+  const double targets = targets_of(crowd);
+  double largest = 0;
+  Box all = empty_box();
+  for (const Outline& surface : crowd.coarse) {
+    largest = std::max(largest, surface.spacing);
+    all = united(all, surface.box);
   }
-  const FastSetting setting = fast_setting(options.tolerance, dual);
-  const Rates rates = rates_of(setting, dual);
-  double direct = targets * targets * double(n - 1) / double(n) * rates.direct_pair;
+  const FastSetting setting = fast_setting(options.tolerance, crowd.dual);
+  const Rates rates = rates_of(setting, crowd.dual);
+  double direct = targets * targets * (n - 1) / n * rates.direct_pair;
   // For few vesicles nothing but spreading and reading is worth counting.
   if (options.method == "auto" && 2 * targets * (rates.spread + rates.read) > direct) return std::nullopt;
-  const Neighbourhood near(coarse, largest / 4);
+  const Neighbourhood near(crowd.sources, largest / 4);
   constexpr double everywhere = 1e300, coarse_from = 6;  // spacings: as InteractionOptions has it
-  direct += targets * near.count(everywhere, coarse_from * largest, (fine_points - targets) / double(n), 0) *
-            rates.direct_pair;
+  direct +=
+      targets * near.count(everywhere, coarse_from * largest, (crowd.fine_points - targets) / n, 0) * rates.direct_pair;
   const double node = Mesh::spacing(setting.wave_number, setting.oversampling);
   const FastChoice best = cheapest(
-      orders, coarse, fine_points, dual, options, setting, near,
+      crowd, options, setting, near,
       [&](double cutoff) {
         return Mesh::padded_nodes(Mesh::nodes_for((all.high - all.low) / cutoff, node, setting.window));
       },

@@ -26,9 +26,24 @@ int spread_order(int p, int finer);
 /// Targets nearer than so many spacings of the spread grid see the fine one.
 double coarse_limit(double tolerance);
 
-/// The cheapest fast sum for surfaces of these orders, if it is cheaper than the direct one or `always`. `coarse`: the
-/// grids of the targets.
-std::optional<FastChoice> choose_fast(std::span<const int> orders, std::span<const Sources> coarse,
-                                      std::span<const Sources> fine, bool dual, const FarOptions&);
+/// A grid of sources as a whole.
+struct Outline {
+  Box box;
+  double spacing = 0;  ///< largest
+};
+Outline outline_of(const Sources&);
+/// Points of a grid of sources of an order.
+constexpr double grid_points(int order) { return 2.0 * (order + 1) * (order + 1); }
+
+/// The surfaces of a suspension as the choice sees them.
+struct SurfaceCrowd {
+  std::span<const int> orders;
+  std::span<const Outline> coarse;        ///< of the grids of the targets, of order p + 1
+  double fine_points = 0;                 ///< of the fine grids of all
+  bool dual = false;                      ///< some viscosity contrasts differ from 1
+  std::span<const Sources> sources = {};  ///< the grids of the targets; not asked for in a cell
+};
+/// The cheapest fast sum, if it is cheaper than the direct one or `always`.
+std::optional<FastChoice> choose_fast(const SurfaceCrowd&, const FarOptions&);
 
 }  // namespace sim

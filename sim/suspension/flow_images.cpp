@@ -47,18 +47,21 @@ FlowImages flow_images(Plans& plans, std::span<const Coefficients> positions,
                        const Eigen::Matrix3d& sides, double tolerance) {
   const auto n = static_cast<int>(positions.size());
   std::vector<int> orders;
-  std::vector<Sources> coarse(positions.size()), fine(positions.size());
-  for (const Coefficients& x : positions) orders.push_back(x.order);
+  std::vector<Outline> coarse(positions.size());
+  double fine_points = 0;
+  for (const Coefficients& x : positions) {
+    orders.push_back(x.order);
+    fine_points += grid_points(smooth_order(x.order));
+  }
   const bool dual = std::any_of(duals.begin(), duals.end(), [](const Coefficients* c) { return c != nullptr; });
   parallel_for(n, [&](int i) {
     const auto k = std::size_t(i);
-    coarse[k] = make_sources(plans.basis(orders[k], orders[k] + 1), positions[k]);
-    fine[k] = make_sources(plans.basis(orders[k], smooth_order(orders[k])), positions[k]);
+    coarse[k] = outline_of(make_sources(plans.basis(orders[k], orders[k] + 1), positions[k]));
   });
   FarOptions far;
   far.tolerance = tolerance;
   far.cell = sides;
-  const FastChoice choice = choose_fast(orders, coarse, fine, dual, far).value();
+  const FastChoice choice = choose_fast({orders, coarse, fine_points, dual}, far).value();
   const double cutoff = choice.setting.cutoff;
 
   FlowImages images{sides, cutoff, coarse_limit(tolerance), {}, {}, {}, std::vector<SpreadSurface>(positions.size())};
@@ -83,17 +86,17 @@ FlowImages flow_images(Plans& plans, std::span<const Coefficients> positions,
   });
   Eigen::Index count = 0;
   for (const SpreadSurface& s : images.spread) count += s.points.cols();
-  Points points(3, count), force(3, count);
-  Tensors tensors = Tensors::Zero(6, dual ? count : 0);
+  Points points(3, count);
+  MeshStrengths strengths{Points(3, count), Tensors::Zero(6, dual ? count : 0), dual};
   Eigen::Index first = 0;
   for (const SpreadSurface& s : images.spread) {
     const Eigen::Index own = s.points.cols();
     points.middleCols(first, own) = s.points;
-    force.middleCols(first, own) = s.strengths.force;
-    if (s.strengths.dual.cols() > 0) tensors.middleCols(first, own) = s.strengths.dual;
+    strengths.force.middleCols(first, own) = s.strengths.force;
+    if (s.strengths.dual.cols() > 0) strengths.dual.middleCols(first, own) = s.strengths.dual;
     first += own;
   }
-  images.smooth = images.mesh->velocity_of(images.mesh->place_sources(points, Vec3::Zero(), dual), force, tensors);
+  images.smooth = images.mesh->velocity_of(images.mesh->place_sources(points, Vec3::Zero(), dual), strengths);
   images.smooth.everywhere =
       -mean_of_double_layers(images.spread, std::abs(sides.determinant()) / (cutoff * cutoff * cutoff));
   return images;

@@ -143,41 +143,67 @@ Surface searched(Plans& plans, const Coefficients& position) {
   return {PointSampler(position), basis, std::move(sources), std::move(tiles)};
 }
 
-/// The surfaces of a suspension with all that a search for gaps asks of them.
+/// The surfaces of a suspension with all that a search for gaps asks of them. Each rank has those near its own ones.
 struct Search {
-  std::vector<std::optional<Surface>> surfaces;
-  std::vector<Box> boxes;
+  Plans& plans;
+  std::span<const Coefficients> positions;
+  Division division;                             ///< of the vesicles
+  std::vector<std::optional<Surface>> surfaces;  ///< as far as they have been asked for
+  std::vector<Box> boxes;                        ///< of all
   CellSides cell;
   double spacing = 0;  ///< largest of the source grids
   double extent = 0;   ///< some two membranes, or all, are no farther apart
+
+  void ask_for(int k) { surfaces[std::size_t(k)].emplace(searched(plans, positions[std::size_t(k)])); }
 };
 
-Search search_among(Plans& plans, std::span<const Coefficients> positions, const CellSides& cell) {
+Search search_among(Plans& plans, std::span<const Coefficients> positions, const CellSides& cell, const Ranks& ranks) {
   const int n = int(positions.size());
-  Search search;
-  search.cell = cell;
-  search.surfaces.resize(n);
-  parallel_for(n, [&](int i) { search.surfaces[i].emplace(searched(plans, positions[i])); });
-  Box all{search.surfaces[0]->sources.box};
-  for (const auto& surface : search.surfaces) {
-    search.boxes.push_back(surface->sources.box);
-    all = united(all, search.boxes.back());
-    search.spacing = std::max(search.spacing, surface->sources.spacing.maxCoeff());
+  std::vector<Vec3> places;
+  std::vector<double> weights;
+  for (const Coefficients& x : positions) {
+    places.emplace_back(x.values.row(0).transpose());
+    weights.push_back(plans.basis(x.order, smooth_order(x.order)).points());
   }
+  Search search{plans, positions, divided(ranks, places, weights), {}, {}, cell};
+  search.surfaces.resize(n);
+  search.boxes.resize(n);
+  std::vector<double> spacings(n);
+  divided_for(
+      search.division, n,
+      [&](int i) {
+        search.ask_for(i);
+        search.boxes[i] = search.surfaces[i]->sources.box;
+        spacings[i] = search.surfaces[i]->sources.spacing.maxCoeff();
+      },
+      [&](Parcel& parcel, int i) { parcel(search.boxes[i].low), parcel(search.boxes[i].high), parcel(spacings[i]); });
+  Box all = search.boxes[0];
+  for (const Box& box : search.boxes) all = united(all, box);
+  search.spacing = *std::max_element(spacings.begin(), spacings.end());
   search.extent = cell ? cell->colwise().norm().minCoeff() : (all.high - all.low).norm();
   return search;
 }
 
 /// Of all pairs whose boxes are no farther apart than `reach`.
-std::vector<Gap> gaps_of_pairs(const Search& search, double reach, const Ranks& ranks) {
+std::vector<Gap> gaps_of_pairs(Search& search, double reach) {
   const auto pairs = near_images(search.boxes, reach, search.cell);
   std::vector<Gap> gaps(pairs.size());
+  Division of_pairs{search.division.ranks, {}};
+  std::vector<int> missing;
+  if (!search.division.whole())
+    for (const ImagePair& pair : pairs) {
+      of_pairs.owner.push_back(search.division.owner[pair.first]);
+      if (search.division.mine(pair.first) && !search.surfaces[pair.second]) missing.push_back(pair.second);
+    }
+  std::sort(missing.begin(), missing.end());
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+  parallel_for(int(missing.size()), [&](int i) { search.ask_for(missing[i]); });
   const auto look = [&](int k) {
     const ImagePair& pair = pairs[k];
     const Surface &first = *search.surfaces[pair.first], &second = *search.surfaces[pair.second];
     gaps[k] = gap_between(second, pair.shift(search.cell), first, pair.first, pair.second);
   };
-  divided_for(divided(ranks, int(pairs.size())), int(pairs.size()), look, [&](Parcel& parcel, int k) {
+  divided_for(of_pairs, int(pairs.size()), look, [&](Parcel& parcel, int k) {
     Gap& gap = gaps[k];
     parcel(gap.distance), parcel(gap.first), parcel(gap.second), parcel(gap.crossing);
   });
@@ -194,11 +220,11 @@ std::string pair_name(const Gap& gap) {
 Gap smallest_gap(Plans& plans, std::span<const Coefficients> positions, const CellSides& cell, const Ranks& ranks) {
   Gap best{std::numeric_limits<double>::infinity(), -1, -1, false};
   if (positions.empty() || (positions.size() < 2 && !cell)) return best;
-  const Search search = search_among(plans, positions, cell);
+  Search search = search_among(plans, positions, cell, ranks);
   // Pairs whose boxes are farther apart than the least gap found so far cannot have a smaller one.
   for (double reach = search.spacing;; reach *= 4) {
     const bool last = reach > search.extent;
-    for (const Gap& gap : gaps_of_pairs(search, search.cell ? std::min(reach, search.extent) : reach, ranks))
+    for (const Gap& gap : gaps_of_pairs(search, search.cell ? std::min(reach, search.extent) : reach))
       if (gap.distance < best.distance) best = gap;
     if (best.distance <= reach || last) return best;
   }
@@ -212,7 +238,8 @@ std::vector<double> gaps_to_neighbours(Plans& plans, std::span<const Coefficient
                                        const CellSides& cell, const Ranks& ranks) {
   std::vector<double> least(positions.size(), std::numeric_limits<double>::infinity());
   if (positions.size() < 2 && !cell) return least;
-  for (const Gap& gap : gaps_of_pairs(search_among(plans, positions, cell), reach, ranks))
+  Search search = search_among(plans, positions, cell, ranks);
+  for (const Gap& gap : gaps_of_pairs(search, reach))
     for (const int k : {gap.first, gap.second}) least[k] = std::min(least[k], gap.distance);
   return least;
 }

@@ -39,19 +39,22 @@ struct PairPlan {
 struct FastInteraction {
   FastSum sum;
   std::vector<const Basis*> spread_basis;
-  std::vector<Sources> spread;
-  std::vector<char> finely;  ///< whose fine grid is seen
+  std::vector<Sources> spread;  ///< of those that this rank needs; their weights
+  std::vector<char> finely;     ///< whose fine grid is seen
 };
 
 struct Interaction {
   std::vector<const Basis*> source_basis,
       target_basis;                             ///< fine source grids; target grids, which are the coarse source grids
-  FarField far;                                 ///< on the coarse grids
+  FarField far;                                 ///< on the coarse grids, which a fast sum does without
   std::shared_ptr<const FastInteraction> fast;  ///< in place of `far`, where it is cheaper
-  std::vector<Sources> sources;                 ///< on the fine grids
-  std::vector<PairPlan> pairs;                  ///< by target, then source
+  std::vector<Sources> sources;                 ///< on the fine grids, of those that this rank's vesicles see so; of a
+                                                ///< fast sum their weights
+  std::vector<PairPlan> pairs;                  ///< of this rank's targets; by target, then source
   std::vector<char> dual;                       ///< per source vesicle: its viscosity contrast differs from 1
   Division division;                            ///< as the options have it
+  std::vector<char> felt;                       ///< whose densities this rank needs
+  std::vector<std::vector<int>> asked_by;       ///< by rank: this one's vesicles whose densities it needs
   bool none() const { return sources.empty(); }
 };
 
@@ -60,7 +63,7 @@ Interaction plan_interaction(Plans&, std::span<const Coefficients> positions, st
                              const InteractionOptions&);
 
 /// Velocity that all other vesicles, and in a periodic cell all images, induce on each, projected on its degree;
-/// of this rank's vesicles, from the densities of all.
-std::vector<Coefficients> induced_velocity(const Interaction&, std::span<const Densities>);
+/// of this rank's vesicles, each rank giving the densities of its own.
+std::vector<Coefficients> induced_velocity(const Interaction&, std::vector<Densities>);
 
 }  // namespace sim

@@ -106,16 +106,13 @@ std::vector<Coefficients> interaction_of(const Suspension& s, std::span<const Co
                                          std::span<const Motion> motions) {
   const int n = int(forces.size());
   std::vector<Densities> densities(n);
-  divided_for(
-      s.division, n,
-      [&](int k) {
-        const Coefficients& f = forces[k];
-        densities[k] = {f, {f.order, Matrix::Zero(f.values.rows(), 3)}};
-        if (const Membrane& m = *s.membranes[k]; !motions.empty())
-          densities[k].dual = dual_density(m.body, m.material.viscosity_contrast, motions[k].velocity);
-      },
-      [&](Parcel& parcel, int k) { parcel(densities[k].force), parcel(densities[k].dual); });
-  return induced_velocity(s.interaction, densities);
+  divided_for(s.division, n, [&](int k) {
+    const Coefficients& f = forces[k];
+    densities[k] = {f, {f.order, Matrix::Zero(f.values.rows(), 3)}};
+    if (const Membrane& m = *s.membranes[k]; !motions.empty())
+      densities[k].dual = dual_density(m.body, m.material.viscosity_contrast, motions[k].velocity);
+  });
+  return induced_velocity(s.interaction, std::move(densities));
 }
 
 std::vector<Coefficients> suspension_forcing(const Suspension& s, std::span<const FlowParameters> flows, double time,
@@ -186,19 +183,16 @@ Vector apply_blocks(std::span<const Block> blocks, const Interaction& interactio
   const std::vector<Vector> parts = split(blocks, y);
   std::vector<Densities> densities(n);
   std::vector<Coefficients> velocity(n);
-  divided_for(
-      division, n,
-      [&](int i) {
-        Trial trial = blocks[i].trial(parts[i]);
-        densities[i] = std::move(trial.densities);
-        velocity[i] = std::move(trial.own_velocity);
-        if (searched.empty()) return;
-        searched[i].directions.push_back(parts[i]);
-        if (!interaction.none()) searched[i].images.push_back(blocks[i].rows(parts[i], velocity[i]));
-      },
-      [&](Parcel& parcel, int i) { parcel(densities[i].force), parcel(densities[i].dual); });
+  divided_for(division, n, [&](int i) {
+    Trial trial = blocks[i].trial(parts[i]);
+    densities[i] = std::move(trial.densities);
+    velocity[i] = std::move(trial.own_velocity);
+    if (searched.empty()) return;
+    searched[i].directions.push_back(parts[i]);
+    if (!interaction.none()) searched[i].images.push_back(blocks[i].rows(parts[i], velocity[i]));
+  });
   if (!interaction.none()) {
-    const std::vector<Coefficients> others = induced_velocity(interaction, densities);
+    const std::vector<Coefficients> others = induced_velocity(interaction, std::move(densities));
     for (int i = 0; i < n; ++i)
       if (division.mine(i)) velocity[i].values += others[i].values;
   }

@@ -119,7 +119,7 @@ TEST_CASE("a state and the same with a vesicle moved by sides of the cell have o
   const std::string shear = "kind = \"shear\"";
   const Desk here(cell_scene(shear, 0.3));
   simulate(here);
-  for (const sim::Vec3& shift : {sim::Vec3(4, 0, 0), sim::Vec3(0, -3.5, 0), sim::Vec3(-4, 3.5, 8)}) {
+  for (const sim::Vec3& shift : {sim::Vec3(0, -3.5, 0), sim::Vec3(-4, 3.5, 8)}) {
     INFO("shift " << shift.transpose());
     const Desk moved(cell_scene(shear, 0.3, shift));
     simulate(moved);
@@ -138,13 +138,14 @@ TEST_CASE("a state and the same with a vesicle moved by sides of the cell have o
 
 TEST_CASE("a vesicle that leaves by a face comes in by the opposite one continuously, where whole ones jump",
           "[commands]") {
-  // It moves by 0.12 from frame to frame, and its middle leaves the box between the sixth and the seventh.
-  const Desk desk(cell_scene("kind = \"uniform\"\nvelocity = [1.2, 0, 0]", 1.2));
+  // It moves by 0.12 from frame to frame, and its middle leaves the box between the sixth and the seventh: frames 3
+  // to 9.
+  const Desk desk(cell_scene("kind = \"uniform\"\nvelocity = [1.2, 0, 0]", 0.9));
   simulate(desk);
   const auto jump = [&](const std::string& set) {
     std::vector<double> changes;
-    render::Image before = still(desk, 0, set);
-    for (int frame = 1; frame <= 12; ++frame) {
+    render::Image before = still(desk, 0.3, set);
+    for (int frame = 4; frame <= 9; ++frame) {
       const render::Image now = still(desk, 0.1 * frame, set);
       changes.push_back(differences(before, now).first);
       before = now;

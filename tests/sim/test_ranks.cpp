@@ -164,15 +164,70 @@ TEST_CASE("a step taken by two, three or 23 ranks is the step of one, bit for bi
     }
     return numbers;
   };
-  std::vector<double> expected;
-  as_ranks(1, [&](const Ranks& ranks) { expected = stepped(ranks); });
-  for (const int count : {2, 3, 23}) {  // of 23, twenty have no unknowns at all
-    std::vector<std::vector<double>> found(static_cast<std::size_t>(count));
-    as_ranks(count, [&](const Ranks& ranks) { found[std::size_t(ranks.rank)] = stepped(ranks); });
-    for (const auto& one : found) {
-      const bool same = one == expected;
-      CHECK(same);
+  // Direct sums in free space, fast ones in a cell.
+  for (const auto& cell : {std::optional<Vec3>(), std::optional<Vec3>(Vec3(10.4, 5, 6))}) {
+    scene.cell.size = cell;
+    std::vector<double> expected;
+    as_ranks(1, [&](const Ranks& ranks) { expected = stepped(ranks); });
+    for (const int count : {2, 3, 23}) {  // of 23, twenty have no unknowns at all
+      std::vector<std::vector<double>> found(static_cast<std::size_t>(count));
+      as_ranks(count, [&](const Ranks& ranks) { found[std::size_t(ranks.rank)] = stepped(ranks); });
+      for (const auto& one : found) {
+        const bool same = one == expected;
+        CHECK(same);
+      }
     }
+  }
+}
+
+TEST_CASE("what the first rank continues from, all continue from, and a record is as long as was foreseen") {
+  Scene scene;
+  scene.flows = {{}};
+  scene.flows[0].kind = "shear";
+  scene.time.end = 1;
+  scene.time.step = 0.02;
+  scene.time.scheme = "bdf2";
+  for (int k = 0; k < 3; ++k) {
+    VesicleParameters v;
+    v.shape = "prolate";
+    v.order = 4 + k;
+    v.reduced_volume = 0.9;
+    v.center = Vec3(3.4 * k, 0, 0);
+    scene.vesicles.push_back(v);
+  }
+  Plans plans;
+  const Model s = make_model(scene, plans);
+  const Dynamics start = initial_dynamics(s);
+  Dynamics d = start;
+  for (int k = 0; k < 2; ++k) d = take_step(s, d, 0.02).value().dynamics;
+  // As soon as two steps are behind, with all that may be learned.
+  CHECK(resume_numbers(start, 2) == resume_numbers(d, 2));
+  CHECK(serialised(d).size() < resume_numbers(d, 2));
+  Dynamics full = d;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::MatrixXf all = Eigen::MatrixXf::Ones(unknowns(d.vesicles[k].position.order), directions_kept(3));
+    full.learned[k] = std::make_shared<const Learned>(Learned{all, all});
+  }
+  CHECK(serialised(full).size() == resume_numbers(d, 2));
+  constexpr int count = 3;
+  std::vector<std::vector<double>> found(count);
+  const std::vector<double> next = serialised(take_step(s, d, 0.02).value().dynamics);
+  as_ranks(count, [&](const Ranks& ranks) {
+    Plans own;
+    const Model model = make_model(scene, own, ranks);
+    Dynamics mine = ranks.first() ? d : Dynamics{};
+    from_first(ranks, mine);
+    mine = take_step(model, mine, 0.02).value().dynamics;
+    const Division to_all[] = {{&ranks, {0, 0, 0}}, {&ranks, {1, 1, 1}}, {&ranks, {2, 2, 2}}};
+    for (int rank = 0; rank < count; ++rank) {
+      Dynamics whole = mine;
+      whole.learned = delivered(mine.learned, mine.keepers, to_all[rank]);
+      if (rank == ranks.rank) found[std::size_t(rank)] = serialised(whole);
+    }
+  });
+  for (const auto& one : found) {
+    const bool same = one == next;
+    CHECK(same);
   }
 }
 
@@ -188,7 +243,7 @@ TEST_CASE("ranks that divide the mesh of a fast sum get the bits of one that has
   };
   for (int b = 0; b < bodies_count; ++b) {
     bodies.push_back({Points(3 * numbers(3)), {}, 0});
-    groups.push_back({bodies.back().coarse, b, true, 0});
+    groups.push_back({bodies.back().coarse, b});
     strengths.push_back({numbers(3), numbers(6)});
   }
   const std::vector<FastStrengths> none(bodies_count);
@@ -210,7 +265,6 @@ TEST_CASE("ranks that divide the mesh of a fast sum get the bits of one that has
         as_ranks(count, [&](const Ranks& ranks) {
           std::vector<FastGroup> mine = groups;
           for (int g = 0; g < bodies_count; ++g) {
-            mine[std::size_t(g)].owner = g % count;
             mine[std::size_t(g)].wanted = g % count == ranks.rank;
           }
           FastParts own;
@@ -222,4 +276,69 @@ TEST_CASE("ranks that divide the mesh of a fast sum get the bits of one that has
           CHECK((found[std::size_t(g)].array() == whole[std::size_t(g)].array()).all());
       }
     }
+}
+
+TEST_CASE("ranks that have only the sources they need get the bits of one that has all") {
+  // Small bodies in a long row: whose targets are at one end needs nothing of the other.
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  constexpr int bodies_count = 40, points = 20, count = 5;
+  const auto numbers = [&](Eigen::Index rows) {
+    return Matrix(Matrix::NullaryExpr(rows, points, [&] { return uniform(random); }));
+  };
+  const auto box_of = [](const Points& p) { return Box{p.rowwise().minCoeff(), p.rowwise().maxCoeff()}; };
+  std::vector<FastBody> bodies;
+  std::vector<FastGroup> groups;
+  std::vector<FastStrengths> strengths;
+  std::vector<Vec3> places;
+  for (int b = 0; b < bodies_count; ++b) {
+    places.emplace_back(uniform(random), uniform(random), 2.5 * b);
+    bodies.push_back({Points(numbers(3).colwise() + places.back()), {}, 0});
+    groups.push_back({bodies.back().coarse, b});
+    strengths.push_back({numbers(3), numbers(6)});
+  }
+  const std::vector<FastStrengths> none(bodies_count);
+  const Eigen::Matrix3d sides = Eigen::Vector3d(5, 5, 2.5 * bodies_count).asDiagonal();
+  for (const auto& cell : {std::optional<Eigen::Matrix3d>(), std::optional<Eigen::Matrix3d>(sides)}) {
+    FastSetting setting = fast_setting(1e-4, true);
+    setting.cutoff = 2;
+    setting.cell = cell;
+    FastParts parts;
+    const auto whole = fast_velocity(plan_fast_sum(setting, bodies, groups, {}, true, parts), strengths, none);
+    std::vector<Points> found(bodies_count);
+    std::vector<int> needed(count);
+    as_ranks(count, [&](const Ranks& ranks) {
+      Division division = divided(ranks, places, std::vector<double>(bodies_count, 1.0));
+      for (int& owner : division.owner) owner = (owner + 1) % count;  // so that nobody's targets lie in its slab
+      FastOutlines outlines;
+      std::vector<char> wanted;
+      for (int b = 0; b < bodies_count; ++b) {
+        outlines.coarse.push_back(box_of(bodies[std::size_t(b)].coarse));
+        wanted.push_back(division.mine(b));
+      }
+      outlines.both = outlines.groups = outlines.coarse;
+      FastParts own;
+      const FastNeeds needs = needs_of(setting, outlines, wanted, own, ranks);
+      std::vector<FastBody> here = bodies;
+      std::vector<FastGroup> mine = groups;
+      std::vector<FastStrengths> given = strengths;
+      for (std::size_t b = 0; b < bodies_count; ++b) {
+        here[b].owner = division.owner[b];
+        mine[b].wanted = wanted[b] != 0;
+        if (!wanted[b]) mine[b].points.resize(3, 0);
+        if (wanted[b] || needs.mesh[b] || needs.pairs[b]) {
+          ++needed[std::size_t(ranks.rank)];
+          continue;
+        }
+        here[b].coarse.resize(3, 0);
+        given[b] = {};
+      }
+      const auto velocity = fast_velocity(plan_fast_sum(setting, here, mine, {}, true, own, ranks), given, none);
+      for (std::size_t b = 0; b < bodies_count; ++b)
+        if (wanted[b]) found[b] = velocity[b];
+    });
+    INFO((cell ? "a cell" : "free space"));
+    for (const int of_rank : needed) CHECK(of_rank <= bodies_count * 5 / 8);  // two fifths, and a few beside them
+    for (std::size_t b = 0; b < bodies_count; ++b) CHECK((found[b].array() == whole[b].array()).all());
+  }
 }
