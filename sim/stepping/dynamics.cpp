@@ -72,6 +72,12 @@ struct Writer {
   void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
 };
 
+/// Whether something was learned; then two sizes each of directions and images, and their numbers, two in the place of
+/// one.
+std::size_t numbers_learned(std::size_t size, std::size_t directions) {
+  return 1 + 2 * (2 + (size * directions + 1) / 2);
+}
+
 /// How many numbers a Writer would write.
 struct Counter {
   std::size_t numbers = 0;
@@ -86,15 +92,14 @@ struct Counter {
     for (const PastLevel& level : history.levels)
       visit_level(level, [this](const char*, const auto& part) { (*this)(part); });
   }
-  void operator()(const Lessons&) { ++numbers; }  // by numbers_learned(), each
+  void operator()(const Lessons& lessons) {
+    ++numbers;
+    for (const auto& learned : lessons)
+      numbers +=
+          learned ? numbers_learned(std::size_t(learned->images.rows()), std::size_t(learned->images.cols())) : 1;
+  }
   void size(const std::vector<VesicleDynamics>& v) { (*this)(v.size()); }
 };
-/// Whether something was learned; then two sizes each of directions and images, and their numbers, two in the place of
-/// one.
-std::size_t numbers_learned(std::size_t size, std::size_t directions) {
-  return 1 + 2 * (2 + (size * directions + 1) / 2);
-}
-
 [[noreturn]] void refuse(const char* why) { throw std::runtime_error(why); }
 
 /// Each number is checked for what its type can hold, each size before anything of that size is made.
@@ -268,7 +273,10 @@ Lessons delivered(const Lessons& learned, std::span<const int> keepers, const Di
 
 std::vector<double> serialised(const Dynamics& d) {
   Writer writer;
-  writer.numbers.reserve(resume_numbers(d, 0));
+  Counter counter;
+  counter(resume_version);
+  transfer(counter, d);
+  writer.numbers.reserve(counter.numbers);
   writer(resume_version);
   transfer(writer, d);
   return std::move(writer.numbers);
@@ -317,9 +325,11 @@ void from_first(const Ranks& ranks, Dynamics& d) {
 }
 
 std::size_t resume_numbers(const Dynamics& d, int past_levels) {
-  Counter counter;
+  Counter counter, lessons;
   counter(resume_version);
   transfer(counter, d);
+  lessons(d.learned);
+  counter.numbers -= lessons.numbers - 1;  // instead of these as many as there may be
   for (const VesicleDynamics& v : d.vesicles) {
     const PastLevel level{v.position, v.motion, v.sliding, 1};
     for (int missing = past_levels - static_cast<int>(v.history.levels.size()); missing > 0; --missing)
