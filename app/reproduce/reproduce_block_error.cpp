@@ -1,7 +1,7 @@
 // Figure 5: error of one block iteration against distance.
 #include "app/reproduce/reproduce_items.h"
 
-#include "render/figures/plot_marks.h"
+#include "render/figures/plot_legend.h"
 #include "sim/stepping/stepper.h"
 #include "sim/surface/shapes.h"
 

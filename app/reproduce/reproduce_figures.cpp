@@ -1,7 +1,7 @@
 // Figures 2 and 3: aliasing, and the spectra that make it matter.
 #include "app/reproduce/reproduce_items.h"
 
-#include "render/figures/plot_marks.h"
+#include "render/figures/plot_legend.h"
 #include "render/scene/section.h"
 #include "sim/sphere/legendre.h"
 #include "sim/sphere/norms.h"

@@ -3,7 +3,7 @@
 
 #include "render/core/parameters.h"
 #include "render/figures/canvas.h"
-#include "render/figures/plot_marks.h"
+#include "render/figures/plot_legend.h"
 #include "render/figures/streamlines.h"
 #include "render/scene/frame.h"
 

@@ -1,11 +1,9 @@
-// Contents of a panel: curves, markers, pictures, and the legend.
+// Contents of a panel: curves, markers, arrow heads, pictures.
 #pragma once
 
 #include "render/figures/plot.h"
 #include "render/image/image.h"
 #include "render/scene/section.h"
-
-#include <optional>
 
 namespace render {
 
@@ -17,6 +15,8 @@ struct Stroke {
 };
 /// Patterns beside the whole line, told apart in grey.
 inline constexpr int dash_count = 5;
+/// Pattern `dash`, in units of the width of the line; 0: whole.
+void set_dash(cairo_t* cairo, int dash, double width);
 /// Clipped to the panel. Points that are not finite interrupt the line.
 void draw_polyline(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
                    const Stroke& stroke);
@@ -27,6 +27,7 @@ void draw_band(const Pen& pen, const Panel& panel, const std::vector<double>& x,
 void draw_closed_curve(const Pen& pen, const Panel& panel, const ClosedCurve& curve, const Eigen::Vector2d& shift,
                        const Stroke& stroke, double fill_opacity = 0);
 enum class Marker { dot, square, diamond, triangle, ring };
+void draw_marker(const Pen& pen, Marker marker, double x, double y, const Colour& colour, double radius);
 /// radius: in units of the theme's stroke. error: half length of a bar in y; empty: none.
 void draw_markers(const Pen& pen, const Panel& panel, const std::vector<double>& x, const std::vector<double>& y,
                   Marker marker, const Colour& colour, double radius = 1.8, const std::vector<double>& error = {});
@@ -52,36 +53,5 @@ void draw_arrow_heads(const Pen& pen, const Panel& panel, const std::vector<Arro
 /// A picture, RGB or RGBA, in a rectangle of the page; smooth: interpolated when enlarged.
 void draw_picture(cairo_t* cairo, const Image& image, double left, double top, double width, double height,
                   bool smooth = true);
-
-/// One line of a legend.
-struct LegendEntry {
-  std::string name;              ///< '\n' separates lines
-  std::optional<Colour> colour;  ///< none: ink
-  std::optional<Marker> marker;
-  int dash = 0;
-  bool line = true;
-};
-enum class Corner { upper_right, lower_right, upper_left, lower_left };
-void draw_legend(const Pen& pen, const Panel& panel, const std::vector<LegendEntry>& entries, Corner corner);
-/// The same in one line whose right end is at (right, baseline).
-void draw_legend_line(const Pen& pen, double right, double baseline, const std::vector<LegendEntry>& entries);
-/// Size including its margin, pt.
-Eigen::Vector2d legend_size(const Ruler& ruler, const Theme& theme, const std::vector<LegendEntry>& entries);
-/// A rectangle of that size within the panel that no curve comes nearer than `distance` (pt): its upper left corner, if
-/// any.
-std::optional<Eigen::Vector2d> free_place(
-    const Panel& panel, const Eigen::Vector2d& size,
-    const std::vector<std::pair<std::vector<double>, std::vector<double>>>& curves, double distance);
-
-/// A legend in as many columns as fit, with long names in several lines.
-struct LaidLegend {
-  std::vector<LegendEntry> entries;
-  std::vector<Eigen::Vector2d> places;  ///< upper left corners
-  double width = 0, height = 0;
-};
-/// lines: at most so many for a name, which is then shortened; most: further entries become "and 3 more".
-LaidLegend laid_legend(const Ruler& ruler, const Theme& theme, const std::vector<LegendEntry>& entries, double width,
-                       std::size_t lines = 3, std::size_t most = 40);
-void draw_legend(const Pen& pen, const LaidLegend& legend, double left, double top);
 
 }  // namespace render

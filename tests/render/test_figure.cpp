@@ -1,6 +1,6 @@
 // Figures and their files.
 #include "render/figures/figure.h"
-#include "render/figures/plot_marks.h"
+#include "render/figures/plot_legend.h"
 #include "render/image/image.h"
 
 #include "diagrams.h"
