@@ -81,11 +81,6 @@ Box united_of_ranks(const Box& mine, const Ranks& ranks) {
   return all;
 }
 
-Box box_of(const Points& points) {
-  if (points.cols() == 0) return empty_box();
-  return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
-}
-
 /// The points of some targets go to the ranks in whose slabs they lie; here are those that came, by rank.
 Points sent_home(const Points& points, std::span<const int> home, const Ranks& ranks,
                  std::vector<Eigen::Index>& count) {

@@ -12,14 +12,14 @@
 
 namespace sim {
 
-namespace {
-
-constexpr int source_patch = 8;
-
 Box box_of(const Points& points) {
   if (points.cols() == 0) return empty_box();
   return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
 }
+
+namespace {
+
+constexpr int source_patch = 8;
 
 PairLists::Level level_of(const Points& points, const Vec3& centre) {
   if (points.cols() > std::numeric_limits<std::uint16_t>::max())

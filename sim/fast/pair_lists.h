@@ -69,6 +69,8 @@ struct PairLists {
   double pairs() const;  ///< evaluated in the residual part
 };
 
+/// That holds these points; of none an empty one.
+Box box_of(const Points& points);
 /// Which bodies have images that are no farther than the cut-off, the unit of length, from some group.
 std::vector<char> near_bodies(std::span<const Box> bodies, std::span<const Box> groups,
                               const std::optional<Eigen::Matrix3d>& cell);
