@@ -9,8 +9,7 @@
 // Symmetries. The later directions of a solve correct what its residual holds of rounding, too. Taken up again, scaled
 // to length one, they would feed on themselves from step to step until a symmetric shape is symmetric only to the
 // tolerance of the solves, and slow instabilities would start from there. Directions therefore count only as long as
-// the residual is large, and numbers in them that are far below the largest, as rounding leaves them where a symmetry
-// about the axes asks for zeros, are made zero.
+// the residual is large, and those that are all but even or odd under a symmetry about the axes are made so.
 #pragma once
 
 #include "sim/membrane/gmres.h"

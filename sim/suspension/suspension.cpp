@@ -235,10 +235,12 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
   };
   divided_for(s.division, n, prepare);
   constexpr int most_iterations = 300;
+  const bool learns = c > 0;  // an instantaneous problem has no next one
   std::vector<Searched> searched(n);
   bool searches = false;  // the guess is none of the directions
   const auto apply = [&](const Vector& y) {
-    return apply_blocks(blocks, s.interaction, s.division, y, searches ? std::span(searched) : std::span<Searched>{});
+    return apply_blocks(blocks, s.interaction, s.division, y,
+                        learns && searches ? std::span(searched) : std::span<Searched>{});
   };
   const auto inverse = [&](const Vector& y) {
     searches = true;
@@ -250,9 +252,10 @@ SuspensionSolve solve_suspension(const Suspension& s, double c, std::span<const 
                                    });
   SuspensionSolve solve{std::vector<Motion>(n), result.iterations, result.residual, result.converged, Lessons(n)};
   const std::size_t use = telling(result.residuals);
-  divided_for(s.division, n, [&](int i) {
+  const auto learn = [&](int i) {
     solve.learned[i] = learned(known.empty() ? nullptr : known[i].get(), searched[i], use, directions_kept(n));
-  });
+  };
+  if (learns) divided_for(s.division, n, learn);
   const std::vector<Vector> parts = split(blocks, result.solution);
   for (int i = 0; i < n; ++i) {
     if (!s.division.mine(i)) continue;
